@@ -450,6 +450,22 @@ static bool check_jpeg(const sheen_Render *render, char *text)
                       text);
 }
 
+static bool check_window(const sheen_Render *render, char text[static MESSAGE_TEXT_BYTES])
+{
+    const sheen_Window *window = &render->window;
+    bool ok = check_named(window->x_px, &RANGES[RANGE_WINDOW_AT], "window.x_px", text) &&
+              check_named(window->y_px, &RANGES[RANGE_WINDOW_AT], "window.y_px", text) &&
+              check_named(window->width_px, &RANGES[RANGE_WINDOW_SIDE], "window.width_px", text) &&
+              check_named(window->height_px, &RANGES[RANGE_WINDOW_SIDE], "window.height_px", text);
+    if (!ok)
+        return false;
+    return (floor(window->x_px) + render->width_px <= window->width_px &&
+            floor(window->y_px) + render->height_px <= window->height_px) ||
+           refuse(text, "window: %ux%u pixels at %.9g,%.9g are not inside of a picture of %ux%u",
+                  render->width_px, render->height_px, window->x_px, window->y_px, window->width_px,
+                  window->height_px);
+}
+
 bool message_check_render(const sheen_Render *render, uint32_t max_width_px, uint32_t max_height_px,
                           char text[static MESSAGE_TEXT_BYTES])
 {
@@ -466,6 +482,7 @@ bool message_check_render(const sheen_Render *render, uint32_t max_width_px, uin
                             (unsigned long long)PROTOCOL_MAX_FRAME_BYTES, PROTOCOL_MAX_SIZE_PX);
     return check_schedule(render, text) &&
            (!render->has_camera || check_camera(&render->camera, text)) &&
+           (!render->has_window || check_window(render, text)) &&
            check_lights(&render->lines, render->lights, render->lights_count, text) &&
            check_surface(render, text) &&
            check_colours(render->has_miss ? &render->miss : NULL,

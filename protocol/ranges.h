@@ -10,6 +10,8 @@
 enum range_name {
     RANGE_SIDE,      /* the device's limit may be lower */
     RANGE_JPEG_SIDE, /* libjpeg's limit */
+    RANGE_WINDOW_AT,
+    RANGE_WINDOW_SIDE,
     RANGE_COORDINATE,
     RANGE_FOV,
     RANGE_ORTHO_HEIGHT,

@@ -40,6 +40,8 @@ enum sheen_status sheen_send(struct sheen_session *session, const struct sheen_r
         return too_old(error, "choose the quality of JPEG files");
     if (session->hello.minor < 4 && pending->render.aliased)
         return too_old(error, "draw frames without antialiasing");
+    if (session->hello.minor < 5 && pending->render.has_window)
+        return too_old(error, "draw a part of a picture");
     status = session_send(session, MESSAGE_RENDER, &pending->render, &pending->seq, error);
     session->last_sent = pending->seq;
     if (!status)

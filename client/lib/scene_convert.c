@@ -147,6 +147,9 @@ void scene_to_message(sheen_Render *render, const struct sheen_request *request)
         .view = request->view,
         .has_deadline_ms = request->deadline_ms != 0,
         .deadline_ms = request->deadline_ms,
+        .has_window = request->window.width_px != 0 || request->window.height_px != 0,
+        .window = {request->window.x_px, request->window.y_px, request->window.width_px,
+                   request->window.height_px},
     };
     memcpy(render->model_sha256, request->model_id, SHEEN_ID_BYTES);
     fill_camera(render, &request->camera);

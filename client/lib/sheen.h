@@ -513,6 +513,14 @@ enum sheen_class {
     SHEEN_CLASS_BATCH, /* nobody waits; never replaced by a newer request */
 };
 
+/* A frame that shows a part of a picture: the place of the frame's top left corner in the picture, and
+ * the picture's size, for which the camera is. The part must be inside. All 0: the frame is the whole
+ * picture. */
+struct sheen_window {
+    double x_px, y_px;            /* from 0; not only whole numbers */
+    uint32_t width_px, height_px; /* 1 to 65536; the device's limits do not matter */
+};
+
 struct sheen_request {
     size_t size;
     uint8_t model_id[SHEEN_ID_BYTES]; /* id of an uploaded model */
@@ -549,6 +557,9 @@ struct sheen_request {
     /* SHEEN_FORMAT_RAW and _ZSTD: the planes are not decoded but returned in frame.data as they
      * were sent (protocol/README.md, chapter 5), for programs that store them or pass them on. */
     bool undecoded;
+    /* For a part of a picture. At whole numbers its planes are those of the picture: on the native
+     * device bit by bit, on others except for rounding. SHEEN_BAD_ARGUMENT with an older daemon. */
+    struct sheen_window window;
 };
 #define SHEEN_REQUEST_DEFAULTS                                                                     \
     ((struct sheen_request){.size = sizeof(struct sheen_request),                                  \

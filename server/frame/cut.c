@@ -61,7 +61,9 @@ struct cut cut_frame(const sheen_Render *render, const struct cut_device *device
     uint64_t px = (uint64_t)render->width_px * render->height_px;
     uint64_t device_px = device->software ? SOFTWARE_TILE_PX : HARDWARE_TILE_PX;
     unsigned weight = pixel_weight(render);
-    struct cut cut = {still_px(weight, device->software), px <= KEPT_TILES * device_px};
+    /* Planes in place are those of whole pictures. */
+    struct cut cut = {still_px(weight, device->software),
+                      px <= KEPT_TILES * device_px && !render->has_window};
     if (render->request_class != sheen_RequestClass_CLASS_INTERACTIVE || !cut.in_place)
         return cut;
     uint64_t most_px = interactive_cost(device) / weight;

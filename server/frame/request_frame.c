@@ -32,6 +32,7 @@ uint64_t request_device_bytes(const struct request_host *host, const sheen_Rende
     const uint32_t measured = PLANE_LIGHT | PLANE_CURVATURE | PLANE_LIGHT_CHANGE;
     const struct renderer_frame_size size = {.width_px = render->width_px,
                                              .height_px = render->height_px,
+                                             .is_part = render->has_window,
                                              .tile_px = cut.tile_px,
                                              .in_place = cut.in_place,
                                              .several_lights = render->lights_count > 1,

@@ -37,6 +37,9 @@ static void describe_camera(char *value, const struct camera *camera)
     add(value, "eye=" VEC3 " target=" VEC3 " up=" VEC3 " %s=%.17g", VEC3_OF(camera->eye),
         VEC3_OF(camera->target), VEC3_OF(camera->up), ortho ? "ortho_height" : "fov_deg",
         ortho ? camera->ortho_height : camera->fov_deg);
+    if (camera->window.width_px)
+        add(value, " window=%.17g,%.17g of %ux%u", camera->window.x, camera->window.y,
+            camera->window.width_px, camera->window.height_px);
 }
 
 static void describe_lines(char *value, const struct frame_request *request)

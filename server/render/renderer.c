@@ -2,6 +2,7 @@
 #include "server/render/renderer.h"
 
 #include "server/render/device.h"
+#include "server/render/tiles.h"
 #include "server/scene/request_check.h"
 
 struct renderer *renderer_create(const struct renderer_device *device,
@@ -69,7 +70,10 @@ size_t renderer_image_bytes(const struct renderer_device *device, const struct i
 uint64_t renderer_frame_bytes(const struct renderer_device *device,
                               const struct renderer_frame_size *size)
 {
-    return device->frame_bytes(size);
+    struct renderer_frame_size drawn = *size;
+    drawn.width_px += size->is_part ? 2 * TILE_MARGIN_PX : 0;
+    drawn.height_px += size->is_part ? 2 * TILE_MARGIN_PX : 0;
+    return device->frame_bytes(&drawn);
 }
 
 uint64_t renderer_held_bytes(const struct renderer *renderer)

@@ -40,6 +40,7 @@ struct renderer_info {
 /* What the memory for a frame depends on. */
 struct renderer_frame_size {
     uint32_t width_px, height_px;
+    bool is_part;     /* of a picture, which is drawn with a margin (struct camera_window) */
     uint64_t tile_px; /* of struct frame_work, as the next */
     bool in_place;
     bool several_lights;

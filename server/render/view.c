@@ -48,14 +48,35 @@ void view_init(struct view *view, const struct camera *camera, uint32_t width_px
     to_array(vec_cross(forward, right), view->axis[1]);
     to_array(forward, view->axis[2]);
     view->perspective = camera->kind == CAMERA_PERSPECTIVE;
+    const struct camera_window *window = &camera->window;
+    bool is_part = window->width_px > 0;
+    uint32_t whole_width_px = is_part ? window->width_px : width_px;
+    uint32_t whole_height_px = is_part ? window->height_px : height_px;
+    /* Whole pixels of the place are the tiles' (view_part_of()). */
+    double shift_x = window->x - floor(window->x), shift_y = window->y - floor(window->y);
     double height = view->perspective ? 2 * tan(camera->fov_deg * (3.14159265358979323846 / 360))
                                       : camera->ortho_height;
-    view->units_per_px = height / height_px;
-    view->centre_px[0] = 0.5 * width_px;
-    view->centre_px[1] = 0.5 * height_px;
-    view->width_px = width_px;
-    view->height_px = height_px;
+    view->units_per_px = height / whole_height_px;
+    view->centre_px[0] = 0.5 * whole_width_px - shift_x;
+    view->centre_px[1] = 0.5 * whole_height_px - shift_y;
+    view->width_px = whole_width_px;
+    view->height_px = whole_height_px;
     set_depths(view, box_min, box_max);
+}
+
+struct view_part view_part_of(const struct frame_request *request)
+{
+    const struct camera_window *window = &request->camera.window;
+    if (window->width_px == 0)
+        return (struct view_part){.picture = {request->width_px, request->height_px}};
+    return (struct view_part){.x = (uint32_t)window->x,
+                              .y = (uint32_t)window->y,
+                              .picture = {window->width_px, window->height_px}};
+}
+
+struct tile view_tile(const struct view_part *part, const struct tile *tile)
+{
+    return (struct tile){tile->x + part->x, tile->y + part->y, tile->width, tile->height};
 }
 
 void view_block_fill(struct view_block *block, const struct view *view, const struct tile *tile)

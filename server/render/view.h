@@ -6,7 +6,7 @@
 #include <stdint.h>
 
 #include "server/render/tiles.h"
-#include "server/scene/scene.h"
+#include "server/scene/frame_request.h"
 
 /* A camera. Camera space has x right, y down, z forward from the eye (shaders/view.glsl). */
 struct view {
@@ -29,7 +29,20 @@ struct view_block {
     int32_t tile[4];
 };
 
-/* Sets up a view for a checked camera. The box contains what is drawn, and sets near and far. */
+/* Where a frame is in its picture: the picture's size, and the place of the frame's top left pixel, px.
+ * Views and tiles that are drawn are those of the picture, so that its part has the same pixels. */
+struct view_part {
+    uint32_t x, y;
+    struct tile_size picture;
+};
+
+/* The part of a checked request: the whole picture, or that of camera.window. */
+struct view_part view_part_of(const struct frame_request *request);
+/* Converts a tile of the frame to coordinates of the picture. */
+struct tile view_tile(const struct view_part *part, const struct tile *tile);
+
+/* Sets up the picture's view for a checked camera and a frame of this size. The box contains what is
+ * drawn, and sets near and far. */
 void view_init(struct view *view, const struct camera *camera, uint32_t width_px,
                uint32_t height_px, const double box_min[3], const double box_max[3]);
 void view_block_fill(struct view_block *block, const struct view *view, const struct tile *tile);

@@ -33,6 +33,22 @@ static bool check_direction(const double v[3], const char *what, struct error *e
             error_set(error, ERROR_REQUEST, "%s is 0,0,0, no direction", what));
 }
 
+static bool check_window(const struct frame_request *request, struct error *error)
+{
+    const struct camera_window *window = &request->camera.window;
+    return (window->width_px == 0 && window->height_px == 0) ||
+           (check_number(window->x, RANGE_WINDOW_AT, "window: x", error) &&
+            check_number(window->y, RANGE_WINDOW_AT, "window: y", error) &&
+            check_number(window->width_px, RANGE_WINDOW_SIDE, "window: width", error) &&
+            check_number(window->height_px, RANGE_WINDOW_SIDE, "window: height", error) &&
+            ((floor(window->x) + request->width_px <= window->width_px &&
+              floor(window->y) + request->height_px <= window->height_px) ||
+             error_set(error, ERROR_REQUEST,
+                       "window: %ux%u pixels at %.9g,%.9g are not inside of a picture of %ux%u",
+                       request->width_px, request->height_px, window->x, window->y,
+                       window->width_px, window->height_px)));
+}
+
 static bool check_camera(const struct camera *camera, struct error *error)
 {
     double view[3];
@@ -167,7 +183,8 @@ bool request_check(const struct frame_request *request, uint32_t max_width_px,
         return error_set(error, ERROR_REQUEST, "no light: there must be one");
     if (!check_number(request->n_lights, RANGE_LIGHTS, "the number of lights", error))
         return false;
-    if (!check_camera(&request->camera, error) || !check_lines(&request->lines, error))
+    if (!check_window(request, error) || !check_camera(&request->camera, error) ||
+        !check_lines(&request->lines, error))
         return false;
     for (uint32_t i = 0; i < request->n_lights; i++)
         if (!check_light(&request->lights[i], error) ||

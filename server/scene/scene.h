@@ -12,6 +12,14 @@ enum { MAX_LIGHTS = 8, MAX_LINES = 16 };
 
 struct renderer_image;
 
+/* The picture of which a frame shows a part, in pixels: its size, and the place of the frame's top
+ * left corner in it. The part is inside. All 0: the frame is the whole picture. Ranges:
+ * RANGE_WINDOW_AT, RANGE_WINDOW_SIDE. */
+struct camera_window {
+    double x, y;
+    uint32_t width_px, height_px;
+};
+
 enum camera_kind { CAMERA_PERSPECTIVE, CAMERA_ORTHOGRAPHIC };
 /* World units, right-handed. up need not be perpendicular to target - eye, but must not be parallel
  * to it. */
@@ -21,6 +29,7 @@ struct camera {
     double fov_deg; /* perspective: vertical field of view, RANGE_FOV */
     /* Orthographic: height of the picture in world units, RANGE_ORTHO_HEIGHT. */
     double ortho_height;
+    struct camera_window window;
 };
 
 /* True if two cameras are equal, bit by bit. */
@@ -28,7 +37,9 @@ static inline bool camera_is_same(const struct camera *a, const struct camera *b
 {
     return a->kind == b->kind && !memcmp(a->eye, b->eye, sizeof a->eye) &&
            !memcmp(a->target, b->target, sizeof a->target) && !memcmp(a->up, b->up, sizeof a->up) &&
-           a->fov_deg == b->fov_deg && a->ortho_height == b->ortho_height;
+           a->fov_deg == b->fov_deg && a->ortho_height == b->ortho_height &&
+           a->window.x == b->window.x && a->window.y == b->window.y &&
+           a->window.width_px == b->window.width_px && a->window.height_px == b->window.height_px;
 }
 
 /* The direction from which a camera that frames the model looks. e1 is the world's x axis made

@@ -106,13 +106,20 @@ void scene_read_request(const sheen_Render *render, const struct scene_subject *
         .surface = {(enum surface_kind)render->surface, render->surface_level},
     };
     double up[3];
+    /* A window leaves the camera of the picture as it is. */
+    const sheen_Window *window = &render->window;
+    uint32_t width_px = render->has_window ? window->width_px : render->width_px;
+    uint32_t height_px = render->has_window ? window->height_px : render->height_px;
     scene_model_up(render, subject, up);
-    scene_default_camera(subject->tables, up, (enum default_view)asked->view, render->width_px,
-                         render->height_px, &request->camera);
+    scene_default_camera(subject->tables, up, (enum default_view)asked->view, width_px, height_px,
+                         &request->camera);
     to_camera(asked, subject, up, &request->camera);
     if (asked->has_zoom)
-        scene_zoom(&request->camera, render->width_px, render->height_px, asked->zoom,
-                   asked->zoom_x, asked->zoom_y);
+        scene_zoom(&request->camera, width_px, height_px, asked->zoom, asked->zoom_x,
+                   asked->zoom_y);
+    if (render->has_window)
+        request->camera.window =
+            (struct camera_window){window->x_px, window->y_px, window->width_px, window->height_px};
     scene_read_lines(&render->lines, up, &request->lines);
     for (uint32_t i = 0; i < request->n_lights; i++)
         scene_read_light(render->lights_count ? &render->lights[i] : &default_light, subject, up,

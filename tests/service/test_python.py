@@ -23,8 +23,9 @@ import between
 import exr
 import sheen
 import wire
-from daemon import BUILD, CUBE, DEVICE, MODELS, SHEEN, SHEEND, Daemon, DaemonCase, grid
+from daemon import BUILD, CUBE, DEVICE, MESA, MODELS, SHEEN, SHEEND, Daemon, DaemonCase, grid
 from sheen import header, messages, protobuf
+from wire import Client
 
 ROOT = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."))
 FENDER = os.path.join(MODELS, "fender.gltf")
@@ -199,6 +200,77 @@ class Same(DaemonCase):
                 os.symlink("/etc/passwd", os.path.join(self.folder, uri))
             with self.assertRaisesRegex(sheen.BadModel, "buffer 0"):
                 sheen.files.read_model(model)
+
+
+class Windows(DaemonCase):
+    """Frames that show a part of a picture."""
+    SIZE = (320, 240)
+
+    def part(self, session, model, place, size, **options):
+        return session.render(model, planes=ALL, size=size, window=(*place, *self.SIZE), **options)
+
+    def test_the_picture_bit_for_bit(self):
+        chance = random.Random(5)
+        n_hits = 0
+        with sheen.connect(self.daemon.unix) as session:
+            for name, options in (("fender.gltf", {"zoom": (3, 0.4, 0.5)}), ("creases.obj", {"lines": "zebra"}),
+                                  ("body.obj", {"ortho": 4, "view": "left"}), ("body.obj", {"surface": "polygon:3"})):
+                model = session.upload(os.path.join(MODELS, name))
+                names = [name for name in ALL if name != "coverage" or "surface" not in options]
+                whole = session.render(model, planes=names, size=self.SIZE, **options)
+                parts = [((0, 0), self.SIZE), ((100, 57), (200, 183)), ((319, 239), (1, 1))]
+                parts += [((chance.randrange(320), chance.randrange(240)), (1, 1)) for _ in range(60)]
+                for (x, y), (width, height) in parts:
+                    frame = session.render(model, planes=names, size=(width, height), window=(x, y, *self.SIZE), **options)
+                    n_hits += frame.hit.sum()
+                    self.assertEqual(frame.camera, whole.camera)
+                    for plane, array in frame.planes.items():
+                        if plane != "colour":
+                            self.assertEqual(bits(array), bits(whole.planes[plane][y:y + height, x:x + width]),
+                                             (name, plane, x, y))
+        self.assertGreater(n_hits, 100000)
+
+    def test_a_gl_device(self):
+        """There the same, except for rounding."""
+        daemon = Daemon("--device", MESA)
+        with sheen.connect(daemon.unix) as session:
+            self.assertNotIn("native", session.server.device)
+            whole = session.render(FENDER, planes=("colour", "position", "normal", "ptex"), size=self.SIZE)
+            for (x, y), (width, height) in (((120, 70), (100, 90)), ((160, 120), (1, 1))):
+                part = session.render(FENDER, planes=whole.planes, size=(width, height), window=(x, y, *self.SIZE))
+                rows, columns = slice(y, y + height), slice(x, x + width)
+                self.assertTrue(part.hit.any())
+                self.assertTrue(np.array_equal(part.ptex["face"], whole.ptex["face"][rows, columns]))
+                for name, most in (("position", 1e-3), ("normal", 1e-5), ("colour", 1)):  # the model has 1000 units
+                    self.assertTrue(np.allclose(part.planes[name], whole.planes[name][rows, columns], rtol=0, atol=most,
+                                                equal_nan=True), name)
+        self.assertEqual(daemon.stop(), 0)
+
+    def test_places_between_pixels(self):
+        """The ray at a quarter of a pixel is that of a pixel of the picture of twice the size."""
+        with sheen.connect(self.daemon.unix) as session:
+            double = session.render(FENDER, planes=ALL, size=(640, 480))
+            for x, y in ((160, 120), (100, 110), (170, 150), (200, 130)):
+                frame = self.part(session, FENDER, (x + 0.25, y + 0.25), (1, 1))
+                found, expected = frame.position[0, 0], double.position[2 * y + 1, 2 * x + 1]
+                self.assertTrue(np.allclose(found, expected, atol=1e-3), (found, expected))  # the model has 1000 units
+                self.assertTrue(np.allclose(frame.normal[0, 0], double.normal[2 * y + 1, 2 * x + 1], atol=1e-5))
+
+    def test_parts_must_be_inside(self):
+        with sheen.connect(self.daemon.unix) as session:
+            model = session.upload(CUBE, "cube.obj")
+            for place, size in (((320, 0), (1, 1)), ((0, 239.5), (1, 2)), ((-0.5, 0), (1, 1)), ((1, 0), (320, 240)),
+                                ((0, 1e300), (1, 1))):
+                with self.subTest(place=place), self.assertRaisesRegex(sheen.BadRequest, "window"):
+                    self.part(session, model, place, size)
+            self.part(session, model, (319.75, 239.75), (1, 1))
+            frame = session.render(model, size=(1, 1), window=(60000, 60000, 65536, 65536))  # more than the device draws
+            self.assertEqual(frame.colour.shape, (1, 1, 4))
+        with Client(self.daemon.unix, minor=5) as client:
+            model = client.upload(CUBE, "cube.obj")
+            window = b"".join(wire.field(n, value) for n, value in enumerate((float("nan"), 0.0, 320, 240), 1))
+            client.send(wire.render(9, model, extra=wire.field(18, window)))
+            self.assert_refused(client, wire.ERROR_REQUEST, "window.x_px", 9)
 
 
 class Sessions(DaemonCase):

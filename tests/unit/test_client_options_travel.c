@@ -44,6 +44,11 @@ static void serve_and_keep_1_4(int fd)
     serve_and_keep_minor(fd, 4);
 }
 
+static void serve_and_keep_1_5(int fd)
+{
+    serve_and_keep_minor(fd, 5);
+}
+
 static void classes_travel(void **state)
 {
     (void)state;
@@ -146,12 +151,47 @@ static void no_antialiasing_travels(void **state)
     }
 }
 
+/* A daemon of minor version 4 would draw the whole picture where a part is wanted. */
+static void a_window_travels(void **state)
+{
+    (void)state;
+    for (int is_newer = 0; is_newer < 2; is_newer++) {
+        struct fake fake;
+        struct sheen_error error;
+        struct sheen_session *session;
+        struct sheen_frame frame = SHEEN_FRAME_DEFAULTS;
+        struct sheen_request request = small_request(SHEEN_FORMAT_PNG);
+        assert_int_equal(open_session(&fake, is_newer ? serve_and_keep_1_5 : serve_and_keep_1_4,
+                                      &session, &error),
+                         SHEEN_OK);
+        request.window = (struct sheen_window){2.5, 3, 640, 480};
+        enum sheen_status status = sheen_send(session, &request, &error);
+        assert_int_equal(status, is_newer ? SHEEN_OK : SHEEN_BAD_ARGUMENT);
+        if (!is_newer) {
+            assert_non_null(strstr(error.text, "too old"));
+            request.window = (struct sheen_window){0};
+            assert_int_equal(sheen_send(session, &request, &error), SHEEN_OK);
+        }
+        assert_int_equal(sheen_receive(session, NULL, &frame, &error), SHEEN_OVERLOADED);
+        assert_int_equal(seen_render.has_window, is_newer);
+        if (is_newer) {
+            assert_true(seen_render.window.x_px == 2.5 && seen_render.window.y_px == 3);
+            assert_int_equal(seen_render.window.width_px, 640);
+            assert_int_equal(seen_render.window.height_px, 480);
+        }
+        sheen_frame_finish(&frame);
+        sheen_close(session);
+        fake_finish(&fake);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(classes_travel),
         cmocka_unit_test(jpeg_options_travel),
         cmocka_unit_test(no_antialiasing_travels),
+        cmocka_unit_test(a_window_travels),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -229,7 +229,7 @@ static const struct {
     ADDED(sheen_connect_options, size, native_threads, 128), /* 0.1 */
     ADDED(sheen_server, size, max_in_flight, 64),
     ADDED(sheen_model_info, size, findings, 5400),
-    ADDED(sheen_request, size, undecoded, 3280),
+    ADDED(sheen_request, size, window, 3304),
     ADDED(sheen_frame, size, threads, 3824),
     ADDED(sheen_stats, size, threads, 784),
     /* Structs without `size` never change: each has one row. */
@@ -243,6 +243,7 @@ static const struct {
     ADDED(sheen_lines, family, eye, 64),
     ADDED(sheen_show, kind, without_legend, 48),
     ADDED(sheen_extreme, has_value, v, 80),
+    ADDED(sheen_window, x_px, height_px, 24),
     ADDED(sheen_times, tables_us, total_us, 56),
     ADDED(sheen_latency, frames, p99_us, 32),
 };

@@ -248,6 +248,16 @@ static void check_render_interactive(const uint8_t *bytes, size_t size)
     same_message(MESSAGE_RENDER, 8, &render, bytes, size);
 }
 
+static void check_render_window(const uint8_t *bytes, size_t size)
+{
+    sheen_Render render = least_render(sheen_Encoding_ENCODING_RAW);
+    render.width_px = render.height_px = 1;
+    render.planes = sheen_Plane_PLANE_POSITION | sheen_Plane_PLANE_NORMAL;
+    render.has_window = true;
+    render.window = (sheen_Window){640, 360, 1280, 720};
+    same_message(MESSAGE_RENDER, 12, &render, bytes, size);
+}
+
 static void check_render_jpeg(const uint8_t *bytes, size_t size)
 {
     sheen_Render render = least_render(sheen_Encoding_ENCODING_JPEG);
@@ -495,6 +505,7 @@ static const struct {
     {"render-interactive", check_render_interactive},
     {"render-jpeg", check_render_jpeg},
     {"render-aliased", check_render_aliased},
+    {"render-window", check_render_window},
     {"superseded", check_superseded},
     {"cancel", check_cancel},
     {"frame", check_frame},

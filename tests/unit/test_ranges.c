@@ -78,6 +78,28 @@ FRAME(line_look, frame->lines.eye_kind = LINE_EYE_DIRECTION; frame->lines.eye[0]
 WIRE(pull, render->show = (sheen_Show){.kind = sheen_ShowKind_SHOW_DRAFT,
                                        .has_direction = true,
                                        .direction = {0, 1, value}})
+
+/* A part of 1x1 pixels, so that it is inside of every picture. */
+static void wire_window(sheen_Render *render, double x, double y, double width, double height)
+{
+    render->width_px = render->height_px = 1;
+    render->has_window = true;
+    render->window = (sheen_Window){x, y, (uint32_t)width, (uint32_t)height};
+}
+static void frame_window(struct frame_request *frame, double x, double y, double width,
+                         double height)
+{
+    frame->width_px = frame->height_px = 1;
+    frame->camera.window = (struct camera_window){x, y, (uint32_t)width, (uint32_t)height};
+}
+WIRE(window_x, wire_window(render, value, 0, 65536, 9))
+FRAME(window_x, frame_window(frame, value, 0, 65536, 9))
+WIRE(window_y, wire_window(render, 0, value, 9, 65536))
+FRAME(window_y, frame_window(frame, 0, value, 9, 65536))
+WIRE(window_width, wire_window(render, 0, 0, value, 9))
+FRAME(window_width, frame_window(frame, 0, 0, value, 9))
+WIRE(window_height, wire_window(render, 0, 0, 9, value))
+FRAME(window_height, frame_window(frame, 0, 0, 9, value))
 BOTH(fov_deg, render->camera.fov_deg, frame->camera.fov_deg)
 WIRE(ortho_height, render->camera.has_fov_deg = false; render->camera.has_ortho_height = true;
      render->camera.ortho_height = value)
@@ -175,6 +197,10 @@ static const struct field {
     {&RANGES[RANGE_SIDE], WHOLE, RENDER "--size %.17gx64", wire_width, frame_width},
     {&RANGES[RANGE_SIDE], WHOLE, RENDER "--size 64x%.17g", wire_height, frame_height},
     {&RANGES[RANGE_JPEG_SIDE], WHOLE, "m.obj -o a.jpg --size 64x%.17g", wire_jpeg, NULL},
+    {&RANGES[RANGE_WINDOW_AT], REAL, NULL, wire_window_x, frame_window_x},
+    {&RANGES[RANGE_WINDOW_AT], REAL, NULL, wire_window_y, frame_window_y},
+    {&RANGES[RANGE_WINDOW_SIDE], WHOLE, NULL, wire_window_width, frame_window_width},
+    {&RANGES[RANGE_WINDOW_SIDE], WHOLE, NULL, wire_window_height, frame_window_height},
     {&RANGES[RANGE_COORDINATE], REAL, RENDER "--eye %.17g,-4,2 --target 0,0,0", wire_eye,
      frame_eye},
     {&RANGES[RANGE_COORDINATE], REAL, RENDER "--eye 3,-4,2 --target 0,%.17g,0", wire_target,

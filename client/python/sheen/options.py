@@ -46,6 +46,7 @@ class Options(TypedDict, total=False):
     deadline: int
     jpeg_quality: int
     jpeg_subsampling: Union[str, int]
+    window: tuple[float, float, int, int]  # the place of the frame in a picture of this width and height
 
 
 def check_names(options: Options) -> None:
@@ -147,6 +148,10 @@ def render_message(model_id: bytes, planes: int, encoding: int, options: Options
         _surface(render, options["surface"])
     if "class_" in options:
         render.request_class = word(options["class_"], CLASSES, "class_")
+    if "window" in options:
+        x, y, across, down = options["window"]
+        render.window = messages.Window(x_px=number(x, "window"), y_px=number(y, "window"),
+                                        width_px=whole(across, "window"), height_px=whole(down, "window"))
     if "deadline" in options:
         render.deadline_ms = whole(options["deadline"], "deadline")
     if "jpeg_quality" in options:

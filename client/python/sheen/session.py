@@ -369,6 +369,8 @@ class Session:
                                 images)
         if render.aliased and self.minor < 4:
             raise BadArgument("the daemon is too old to draw frames without antialiasing")
+        if render.window and self.minor < 5:
+            raise BadArgument("the daemon is too old to draw a part of a picture")
         return render
 
     def _ask_frame(self, render: messages.Render, progress: Progress | None) -> int:

@@ -134,14 +134,17 @@ static bool is_single(const struct gl_frame *own)
            own->tile.height == own->work->request->height_px;
 }
 
-/* Returns the next tile, in the chosen planes, and which part of it must be drawn. If the tiles
+/* Returns the next tile of the picture, in the chosen planes, and which part of it must be drawn. If the tiles
  * before it are in the same planes, they are its margin; the part that those evaluated as their own
  * margin is evaluated again. */
 static struct tile place_tile(struct gl_renderer *r, const struct gl_frame *own)
 {
     const struct frame_request *request = own->work->request;
-    const struct tile whole = {0, 0, request->width_px, request->height_px};
-    const struct tile tile = tile_at(own->x, own->y, &own->tile, whole.width, whole.height);
+    const struct view_part part = view_part_of(request);
+    const struct tile whole = {0, 0, part.picture.width, part.picture.height};
+    const struct tile of_frame =
+        tile_at(own->x, own->y, &own->tile, request->width_px, request->height_px);
+    const struct tile tile = view_tile(&part, &of_frame);
     bool in_place = r->in_use == PLANES_TILED, goes_on = in_place && r->collecting.frame;
     const struct tile drawn = tile_with_margin(&tile, !goes_on, whole.width, whole.height);
     r->drawing = (struct drawing){in_place ? whole : drawn, drawn, in_place ? tile : drawn};

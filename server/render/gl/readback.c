@@ -11,11 +11,14 @@ struct rows {
     size_t stride, pixel;
 };
 
-static struct rows tile_rows(const struct frame *frame, int plane, const struct tile *tile)
+static struct rows tile_rows(const struct frame *frame, int plane,
+                             const struct frame_request *request, const struct tile *tile)
 {
+    const struct view_part part = view_part_of(request);
     size_t pixel = frame_plane_bytes((enum frame_plane)(1 << plane));
     size_t stride = pixel * frame->width_px;
-    char *first = (char *)frame->plane[plane] + tile->y * stride + tile->x * pixel;
+    char *first =
+        (char *)frame->plane[plane] + (tile->y - part.y) * stride + (tile->x - part.x) * pixel;
     return (struct rows){first, stride, pixel};
 }
 
@@ -101,16 +104,16 @@ static bool read_packed(struct gl_renderer *r, const struct frame_request *reque
     if (ok && request->planes & NEED_DEPTH)
         read_part(r->target.hit_depth, GL_RED, GL_FLOAT, part, pixels * 4, depth);
     if (ok && request->planes & PLANE_POSITION) {
-        struct rows rows = tile_rows(frame, 1, tile);
+        struct rows rows = tile_rows(frame, 1, request, tile);
         pack_position(depth, view, &rows, tile);
     }
     if (ok && request->planes & PLANE_NORMAL) {
-        struct rows rows = tile_rows(frame, 2, tile);
+        struct rows rows = tile_rows(frame, 2, request, tile);
         read_four(r->target.normal, GL_RGBA, GL_FLOAT, part, other);
         pack_normal(other, depth, &rows, tile);
     }
     if (ok && request->planes & PLANE_PTEX) {
-        struct rows rows = tile_rows(frame, 3, tile);
+        struct rows rows = tile_rows(frame, 3, request, tile);
         read_four(r->target.ptex, GL_RGBA_INTEGER, GL_UNSIGNED_INT, part, other);
         pack_ptex(other, &rows, tile);
     }
@@ -140,7 +143,7 @@ bool readback(struct gl_renderer *r, const struct frame_request *request, const 
     for (size_t i = 0; i < sizeof direct / sizeof direct[0]; i++) {
         if (!(request->planes & 1u << direct[i].plane))
             continue;
-        struct rows rows = tile_rows(frame, direct[i].plane, tile);
+        struct rows rows = tile_rows(frame, direct[i].plane, request, tile);
         read_direct(direct[i].texture, direct[i].format, direct[i].type, &rows, frame->width_px,
                     &part);
     }

@@ -94,11 +94,12 @@ static void put_rows(void *owner, uint32_t first, uint32_t end)
 {
     const struct reading *reading = owner;
     const struct native_drawing *d = reading->drawing;
+    const struct view_part part = view_part_of(d->request);
     for (uint32_t y = first; y < end; y++) {
         struct row row = {
             .x = d->place.x + d->inside.x, .y = d->place.y + d->inside.y + y, .n = d->inside.width};
         row.from = (size_t)(d->inside.y + y) * d->target->width + d->inside.x;
-        row.to = (size_t)row.y * reading->frame->width_px + row.x;
+        row.to = (size_t)(row.y - part.y) * reading->frame->width_px + row.x - part.x;
         put_row(d, reading->view, reading->frame, &row);
     }
 }

@@ -145,10 +145,13 @@ enum frame_step native_frame_step(struct renderer *renderer, struct renderer_mod
         return FRAME_POLYGONS;
     bool is_kept_view, is_whole;
     struct native_view_planes *planes = native_planes_choose(r, own, shown, work, &is_kept_view);
-    struct tile tile = tile_at(own->x, own->y, &own->tile, request->width_px, request->height_px);
+    const struct view_part part = view_part_of(request);
+    const struct tile of_frame =
+        tile_at(own->x, own->y, &own->tile, request->width_px, request->height_px);
+    const struct tile tile = view_tile(&part, &of_frame);
     struct native_drawing drawing = {
         .device = r->device, .target = &planes->target, .shown = shown, .request = request};
-    drawing.place = tile_with_margin(&tile, true, request->width_px, request->height_px);
+    drawing.place = tile_with_margin(&tile, true, part.picture.width, part.picture.height);
     drawing.inside = tile_within(&tile, &drawing.place);
     struct view view;
     view_init(&view, &request->camera, request->width_px, request->height_px,
