@@ -11,9 +11,10 @@ extern const struct command COMMAND_STATS;
 extern const struct command COMMAND_LIGHTS;
 extern const struct command COMMAND_PATTERNS;
 extern const struct command COMMAND_LEVELS;
+extern const struct command COMMAND_PICK;
 
 /* All commands, in the order in which they are listed. */
-#define N_COMMANDS 7
+#define N_COMMANDS 8
 extern const struct command *const COMMANDS[N_COMMANDS];
 
 #endif

@@ -20,10 +20,10 @@ ROOT = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)),
 PREFIX, LIBDIR = "/opt/sheen", "/opt/sheen/lib/here"
 PYTHON = f"lib/python3.{sys.version_info.minor}/dist-packages"
 MODULES = ("__init__", "__main__", "connection", "daemon", "errors", "files", "frame", "header", "messages", "options",
-           "planes", "protobuf", "scene", "session", "values", "version")
+           "picks", "planes", "protobuf", "scene", "session", "values", "version")
 EXAMPLES = os.path.join(ROOT, "client", "examples")
 STRICT = ["-Wall", "-Wextra", "-pedantic", "-Werror"]
-COMMANDS = ("info", "levels", "lights", "patterns", "render", "stats", "stream")
+COMMANDS = ("info", "levels", "lights", "patterns", "pick", "render", "stats", "stream")
 
 with open(os.path.join(ROOT, "Makefile"), encoding="utf-8") as _file:
     VERSION = re.search(r"^VERSION := (.*)$", _file.read(), re.M).group(1)

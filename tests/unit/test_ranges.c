@@ -258,6 +258,8 @@ static const struct field {
     {&OPTION_RANGES[OPTION_RANGE_FRAMES], WHOLE, "m.obj --frames %.17g", NULL, NULL},
     {&OPTION_RANGES[OPTION_RANGE_ORBIT], REAL, STREAM "--orbit %.17g", NULL, NULL},
     {&OPTION_RANGES[OPTION_RANGE_RECONNECT], WHOLE, STREAM "--reconnect %.17g", NULL, NULL},
+    {&OPTION_RANGES[OPTION_RANGE_SAMPLES], WHOLE, "m.obj --section 0,0,9,9 --samples %.17g", NULL,
+     NULL},
 };
 #define N_FIELDS (sizeof(FIELDS) / sizeof(*FIELDS))
 
@@ -282,7 +284,10 @@ static bool client_takes(const struct field *field, double value)
     _Pragma("GCC diagnostic push") _Pragma("GCC diagnostic ignored \"-Wformat-nonliteral\"");
     snprintf(line, sizeof(line), field->line, value);
     _Pragma("GCC diagnostic pop");
-    return parse(field->wire ? &COMMAND_RENDER : &COMMAND_STREAM, line) == OPTIONS_RUN;
+    const struct command *command = field->wire ? &COMMAND_RENDER : &COMMAND_STREAM;
+    if (field->range == &OPTION_RANGES[OPTION_RANGE_SAMPLES])
+        command = &COMMAND_PICK;
+    return parse(command, line) == OPTIONS_RUN;
 }
 
 static bool message_takes(const struct field *field, double value)

@@ -15,6 +15,7 @@ const struct range OPTION_RANGES[N_OPTION_RANGES] = {
     [OPTION_RANGE_FRAMES] = {NULL, "--frames", 1, 1000000, false, ""},
     [OPTION_RANGE_ORBIT] = {NULL, "--orbit", -360, 360, false, "degrees"},
     [OPTION_RANGE_RECONNECT] = {NULL, "--reconnect", 0, 86400, false, "seconds"},
+    [OPTION_RANGE_SAMPLES] = {NULL, "--samples", 2, 4096, false, ""},
 };
 
 bool options_refuse(char *why, const char *format, ...)
@@ -266,6 +267,8 @@ enum options_result options_parse(const struct command *command, int argc, char 
             return wrong(why, "%s", "a MODEL file is missing");
         options->model = argv[optind++];
     }
+    if (command->takes_argument && optind < argc)
+        options->argument = argv[optind++];
     if (optind < argc)
         return wrong(why, "'%.150s' is one argument too many", argv[optind]);
     const char *server = getenv("SHEEN_SERVER");

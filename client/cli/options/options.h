@@ -35,10 +35,12 @@ enum options_given {
     GIVEN_ZOOM = 1 << 14,
     GIVEN_LEGEND = 1 << 15,
     GIVEN_ANTIALIAS = 1 << 16,
+    GIVEN_SAMPLES = 1 << 17,
 };
 
 struct options {
     const char *model;            /* the model's file; NULL for commands without one */
+    const char *argument;         /* what follows the model; NULL: nothing */
     const char *server;           /* --server, else SHEEN_SERVER, else NULL: a private daemon */
     const char *device;           /* NULL: auto */
     const char *native_isa;       /* NULL: auto */
@@ -61,6 +63,9 @@ struct options {
     uint32_t reconnect_s;
     double orbit_deg; /* stream: degrees for each frame */
     bool light_only;  /* stream: the light moves, not the camera */
+    bool has_section; /* pick: `at` is a line, else a pixel */
+    double at[4];     /* pick: px */
+    uint32_t samples; /* pick: of a section, 2 to 4096 */
 };
 
 /* One option. `apply` gets the value (NULL for a flag) and returns false with the reason in `why`.
@@ -93,15 +98,21 @@ struct command {
     const struct option_row *const *tables; /* ends with NULL */
     const char *examples;
     bool takes_model;
-    unsigned codes; /* enum command_codes */
+    bool takes_argument; /* one more argument may follow MODEL; check() refuses a missing one */
+    unsigned codes;      /* enum command_codes */
     /* Checks the options together; false with the reason in `why`. NULL: no check. */
     bool (*check)(struct options *options, char *why);
     int (*run)(const struct options *options); /* returns the exit code */
 };
 
 /* Ranges of options that are not part of a request. */
-enum option_range_name { OPTION_RANGE_FRAMES, OPTION_RANGE_ORBIT, OPTION_RANGE_RECONNECT };
-#define N_OPTION_RANGES 3
+enum option_range_name {
+    OPTION_RANGE_FRAMES,
+    OPTION_RANGE_ORBIT,
+    OPTION_RANGE_RECONNECT,
+    OPTION_RANGE_SAMPLES,
+};
+#define N_OPTION_RANGES 4
 extern const struct range OPTION_RANGES[N_OPTION_RANGES];
 
 enum options_result { OPTIONS_RUN, OPTIONS_HELP, OPTIONS_WRONG };

@@ -46,15 +46,25 @@ static bool next_part(const char **text, char stop, char *part, size_t part_byte
     return true;
 }
 
-bool value_vec3(const char *text, double value[static 3])
+bool value_numbers(const char *text, double *value, unsigned n)
 {
     char part[64];
-    for (int i = 0; i < 3; i++) {
+    for (unsigned i = 0; i < n; i++) {
         bool has_comma = strchr(text, ',') != NULL;
-        if (has_comma != (i < 2) || !next_part(&text, ',', part, sizeof(part)) ||
-            !value_double(part, &value[i]) || !range_holds(&RANGES[RANGE_COORDINATE], value[i]))
+        if (has_comma != (i + 1 < n) || !next_part(&text, ',', part, sizeof(part)) ||
+            !value_double(part, &value[i]))
             return false;
     }
+    return true;
+}
+
+bool value_vec3(const char *text, double value[static 3])
+{
+    if (!value_numbers(text, value, 3))
+        return false;
+    for (int i = 0; i < 3; i++)
+        if (!range_holds(&RANGES[RANGE_COORDINATE], value[i]))
+            return false;
     return true;
 }
 

@@ -11,9 +11,10 @@
 
 #include "client/lib/sheen.h"
 
-bool value_double(const char *text, double *value);        /* 1, -0.5, 1e3 */
-bool value_uint32(const char *text, uint32_t *value);      /* decimal digits */
-bool value_vec3(const char *text, double value[static 3]); /* X,Y,Z: coordinates */
+bool value_double(const char *text, double *value);              /* 1, -0.5, 1e3 */
+bool value_numbers(const char *text, double *value, unsigned n); /* n numbers and commas between */
+bool value_uint32(const char *text, uint32_t *value);            /* decimal digits */
+bool value_vec3(const char *text, double value[static 3]);       /* X,Y,Z: coordinates */
 /* X,Y,Z that is not zero; or x, y or z, with an optional sign. */
 #define VALUE_DIRECTION_WORDS "x, y, z, -x, -y, -z, or X,Y,Z in numbers, not 0,0,0"
 bool value_direction(const char *text, double value[static 3]);

@@ -14,6 +14,7 @@ from sheen.errors import (BadArgument, BadImage, BadModel, BadPeer, BadRequest, 
 from sheen.frame import Extreme, Frame
 from sheen.messages import HelloOk, ModelInfo, Stats, Times
 from sheen.options import Options
+from sheen.picks import Pick, Section
 from sheen.planes import PLANES
 from sheen.scene import Camera, Light, Lines, Pattern
 from sheen.session import Model, Session
@@ -23,5 +24,5 @@ connect = Session
 
 __all__ = ["BadArgument", "BadImage", "BadModel", "BadPeer", "BadRequest", "BadVersion", "Camera", "Cancelled",
            "DeviceFailed", "Error", "Extreme", "Frame", "GpuLost", "HelloOk", "Late", "Light", "Lines", "Lost", "Model",
-           "ModelInfo", "NoServer", "Options", "Overloaded", "PLANES", "Pattern", "Session", "ShuttingDown", "Stats",
+           "ModelInfo", "NoServer", "Options", "Overloaded", "PLANES", "Pattern", "Pick", "Section", "Session", "ShuttingDown", "Stats",
            "Superseded", "Timeout", "Times", "TooBig", "UnknownModel", "__version__", "connect"]

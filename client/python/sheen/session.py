@@ -8,7 +8,7 @@ from typing import Callable, Generator, Iterable, Mapping, Sequence, Union, Unpa
 
 import numpy as np
 
-from sheen import files, header, messages, planes
+from sheen import files, header, messages, picks, planes
 from sheen.connection import Connection, connect
 from sheen.daemon import PrivateDaemon
 from sheen.errors import (BadArgument, BadImage, BadModel, BadPeer, BadRequest, BadVersion, Cancelled, DeviceFailed,
@@ -16,8 +16,10 @@ from sheen.errors import (BadArgument, BadImage, BadModel, BadPeer, BadRequest, 
 from sheen.frame import Frame
 from sheen.messages import Type
 from sheen.options import Options, check_names, lights_and_lines, render_message
+from sheen.picks import Pick, Section
 from sheen.protobuf import M, Malformed, Message, decode, encode
 from sheen.scene import Camera, Pattern
+from sheen.values import size
 
 Progress = Callable[[str, int, int], None]
 PathOrBytes = Union[str, "os.PathLike[str]", bytes]
@@ -424,6 +426,38 @@ class Session:
                 yield first
         finally:
             self._drop(waiting)
+
+    def _windows(self, model: Model | PathOrBytes, places: Sequence[tuple[float, float]], camera: Camera | None,
+                 options: Options) -> list[Frame]:
+        """Frames of one pixel each, which is a part of the picture that the options describe."""
+        width, height = size(options.get("size", (1280, 720)))
+        for x, y in places:
+            if not (0 <= x < width and 0 <= y < height):
+                raise BadArgument(f"{x},{y} is not in the picture, whose pixels are 0,0 to {width - 1},{height - 1} (size)")
+        both = cast(Options, {**options, "size": (1, 1)})
+        if camera is not None:
+            if "camera" in options:
+                raise BadArgument("there are two cameras")
+            both["camera"] = camera
+        parts: list[Camera | Options] = [{"window": (x, y, width, height)} for x, y in places]
+        return list(self.stream(model, parts, in_flight=header.MAX_CREDITS, planes=picks.PLANES, format="raw", **both))
+
+    def pick(self, model: Model | PathOrBytes, camera: Camera | None, x: float, y: float, /,
+             **options: Unpack[Options]) -> Pick:
+        """The numbers at the pixel x, y of the picture of this camera and these options: the same as in its planes.
+        Fractions lie between the centres of pixels."""
+        check_names(options)
+        return Pick.of(x, y, self._windows(model, [(x, y)], camera, options)[0])
+
+    def section(self, model: Model | PathOrBytes, camera: Camera | None, start: tuple[float, float],
+                end: tuple[float, float], samples: int = 100, /, **options: Unpack[Options]) -> Section:
+        """The numbers at places along a line of the picture, both ends included."""
+        check_names(options)
+        if samples < 2:
+            raise BadArgument(f"samples is {samples}; it must be at least 2")
+        places = [(start[0] + (end[0] - start[0]) * i / (samples - 1), start[1] + (end[1] - start[1]) * i / (samples - 1))
+                  for i in range(samples - 1)] + [(end[0], end[1])]
+        return Section.of(places, self._windows(model, places, camera, options))
 
     def _drop(self, waiting: Sequence[int]) -> None:
         """Takes back the requests that are still in flight."""

@@ -1,0 +1,366 @@
+/* sheen pick: the numbers of the surface at a pixel of a picture, or along a line in it.
+ *
+ * A frame of one pixel, a part of the picture, has these numbers bit by bit as the planes of the
+ * whole picture have them. */
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "client/cli/base/failure.h"
+#include "client/cli/client.h"
+#include "client/cli/commands.h"
+#include "client/cli/options/values.h"
+#include "client/cli/output/scene_json.h"
+
+#define NO_FACE UINT32_MAX
+
+enum {
+    POSITION_BIT = 1,
+    NORMAL_BIT = 2,
+    PTEX_BIT = 3,
+    LIGHT_BIT = 4,
+    CURVATURE_BIT = 5,
+};
+#define PICK_PLANES                                                                                \
+    (SHEEN_PLANE_POSITION | SHEEN_PLANE_NORMAL | SHEEN_PLANE_PTEX | SHEEN_PLANE_LIGHT |            \
+     SHEEN_PLANE_CURVATURE)
+
+/* The numbers at a place of the picture; NaN where there are none. */
+struct pick {
+    double x, y;   /* px; whole numbers are centres of pixels */
+    uint32_t face; /* Ptex; NO_FACE: no surface is there */
+    float uv[2], point[3], normal[3], curvature[2], light[2];
+};
+
+/* The picks in the order of their places, and as far as they are sent and answered. */
+struct picks {
+    size_t n, n_sent, n_answered;
+    struct pick *pick;
+    struct sheen_request request;
+    struct sheen_frame frame; /* the latest */
+};
+
+static bool has_surface(const struct pick *pick)
+{
+    return pick->face != NO_FACE;
+}
+
+static double mean(const struct pick *pick)
+{
+    return 0.5 * ((double)pick->curvature[0] + (double)pick->curvature[1]);
+}
+
+static double gaussian(const struct pick *pick)
+{
+    return (double)pick->curvature[0] * (double)pick->curvature[1];
+}
+
+/* The smallest radius of curvature in any direction; infinite where the surface is flat. */
+static double radius(const struct pick *pick)
+{
+    return 1 / fmax(fabs((double)pick->curvature[0]), fabs((double)pick->curvature[1]));
+}
+
+static enum sheen_status send(struct client *client, struct picks *picks)
+{
+    const struct pick *pick = &picks->pick[picks->n_sent];
+    picks->request.window.x_px = pick->x;
+    picks->request.window.y_px = pick->y;
+    enum sheen_status status = sheen_send(client->session, &picks->request, &client->error);
+    if (!status)
+        picks->n_sent++;
+    return status;
+}
+
+static enum sheen_status receive(struct client *client, struct picks *picks)
+{
+    struct pick *pick = &picks->pick[picks->n_answered];
+    enum sheen_status status =
+        sheen_receive(client->session, &client->report, &picks->frame, &client->error);
+    if (status)
+        return status;
+    void *const *plane = picks->frame.plane;
+    memcpy(&pick->face, plane[PTEX_BIT], sizeof(pick->face));
+    memcpy(pick->uv, (const char *)plane[PTEX_BIT] + sizeof(pick->face), sizeof(pick->uv));
+    memcpy(pick->point, plane[POSITION_BIT], sizeof(pick->point));
+    memcpy(pick->normal, plane[NORMAL_BIT], sizeof(pick->normal));
+    memcpy(pick->curvature, plane[CURVATURE_BIT], sizeof(pick->curvature));
+    memcpy(pick->light, plane[LIGHT_BIT], sizeof(pick->light));
+    picks->n_answered++;
+    client_answered(client);
+    return SHEEN_OK;
+}
+
+/* Asks for all picks without an answer, as many at once as the daemon allows. Answers to stills come
+ * in the order of the requests. */
+static enum sheen_status ask(struct client *client, const struct options *options,
+                             struct picks *picks)
+{
+    struct sheen_server server = SHEEN_SERVER_DEFAULTS;
+    enum sheen_status status = client_upload_images(client, options, &picks->request);
+    if (!status)
+        status = sheen_get_server(client->session, &server, &client->error);
+    picks->n_sent = picks->n_answered;
+    while (!status && picks->n_answered < picks->n) {
+        if (picks->n_sent < picks->n && picks->n_sent - picks->n_answered < server.max_in_flight)
+            status = send(client, picks);
+        else
+            status = receive(client, picks);
+    }
+    return status;
+}
+
+static void print_floats(const char *name, const float *value, size_t n)
+{
+    printf("%-16s", name);
+    for (size_t i = 0; i < n; i++)
+        printf(" %.9g", (double)value[i]);
+    putchar('\n');
+}
+
+static void print_table(const struct pick *pick)
+{
+    printf("%-16s %.9g %.9g\n", "pixel", pick->x, pick->y);
+    if (!has_surface(pick)) {
+        puts("nothing there   no surface is visible at this place");
+        return;
+    }
+    print_floats("point", pick->point, 3);
+    if (isnan(pick->normal[0])) {
+        puts("normal           none");
+    } else {
+        print_floats("normal", pick->normal, 3);
+        print_floats("curvatures", pick->curvature, 2);
+        printf("%-16s %.9g\n%-16s %.9g\n", "mean", mean(pick), "gaussian", gaussian(pick));
+        if (isinf(radius(pick)))
+            puts("radius           none, flat");
+        else
+            printf("%-16s %.9g\n", "radius", radius(pick));
+    }
+    printf("%-16s %" PRIu32 "\n", "face", pick->face);
+    print_floats("u v", pick->uv, 2);
+    if (isnan(pick->light[0]))
+        puts("light            not met");
+    else
+        print_floats("light", pick->light, 2);
+}
+
+/* Writes a field of a CSV line; nothing for NaN. */
+static void print_field(double value)
+{
+    if (isnan(value))
+        putchar(',');
+    else
+        printf(",%.9g", value);
+}
+
+static void print_csv(const struct picks *picks)
+{
+    puts("x,y,point.x,point.y,point.z,normal.x,normal.y,normal.z,k.min,k.max,radius,face,u,v,"
+         "light.s,light.t");
+    for (size_t i = 0; i < picks->n; i++) {
+        const struct pick *pick = &picks->pick[i];
+        bool is_there = has_surface(pick);
+        printf("%.17g,%.17g", pick->x, pick->y);
+        for (int k = 0; k < 3; k++)
+            print_field((double)pick->point[k]);
+        for (int k = 0; k < 3; k++)
+            print_field((double)pick->normal[k]);
+        for (int k = 0; k < 2; k++)
+            print_field((double)pick->curvature[k]);
+        print_field(radius(pick));
+        print_field(is_there ? pick->face : NAN);
+        for (int k = 0; k < 2; k++)
+            print_field(is_there ? (double)pick->uv[k] : (double)NAN);
+        for (int k = 0; k < 2; k++)
+            print_field((double)pick->light[k]);
+        putchar('\n');
+    }
+}
+
+static void json_floats(struct json *json, const char *key, const float *value, size_t n)
+{
+    json_array_begin(json, key);
+    for (size_t i = 0; i < n; i++)
+        json_double(json, NULL, (double)value[i]);
+    json_array_end(json);
+}
+
+static void json_pick(struct json *json, const struct pick *pick)
+{
+    json_double(json, "x", pick->x);
+    json_double(json, "y", pick->y);
+    json_bool(json, "hit", has_surface(pick));
+    if (!has_surface(pick))
+        return;
+    json_floats(json, "point", pick->point, 3);
+    if (!isnan(pick->normal[0])) {
+        json_floats(json, "normal", pick->normal, 3);
+        json_double(json, "k_min", (double)pick->curvature[0]);
+        json_double(json, "k_max", (double)pick->curvature[1]);
+        json_double(json, "mean", mean(pick));
+        json_double(json, "gaussian", gaussian(pick));
+        json_double(json, "radius", radius(pick));
+    }
+    json_uint(json, "face", pick->face);
+    json_floats(json, "uv", pick->uv, 2);
+    if (!isnan(pick->light[0]))
+        json_floats(json, "light_st", pick->light, 2);
+}
+
+static void print_json(struct json *json, const struct options *options,
+                       const struct client *client, const struct picks *picks)
+{
+    json_object_begin(json, NULL);
+    if (options->has_section) {
+        json_array_begin(json, "samples");
+        for (size_t i = 0; i < picks->n; i++) {
+            json_object_begin(json, NULL);
+            json_pick(json, &picks->pick[i]);
+            json_object_end(json);
+        }
+        json_array_end(json);
+    } else {
+        json_pick(json, &picks->pick[0]);
+    }
+    json_uint(json, "width", options->request.width_px);
+    json_uint(json, "height", options->request.height_px);
+    client_json_origin(json, client, options, &picks->frame);
+    json_string(json, "model", options->model);
+    scene_json(json, &picks->request, &picks->frame);
+    json_object_end(json);
+}
+
+static enum sheen_status print(struct client *client, const struct options *options,
+                               const struct picks *picks)
+{
+    if (options->json) {
+        struct json json = {.out = stdout};
+        print_json(&json, options, client, picks);
+        return client_finish_json(client, &json);
+    }
+    if (options->has_section)
+        print_csv(picks);
+    else
+        print_table(&picks->pick[0]);
+    return SHEEN_OK;
+}
+
+/* Sets the places: the pixel, or places at equal distances from the first to the last of the
+ * section. */
+static void set_places(struct picks *picks, const double at[static 4])
+{
+    size_t last = picks->n - 1;
+    for (size_t i = 0; i < last; i++) {
+        picks->pick[i].x = at[0] + (at[2] - at[0]) * (double)i / (double)last;
+        picks->pick[i].y = at[1] + (at[3] - at[1]) * (double)i / (double)last;
+    }
+    picks->pick[last].x = at[2];
+    picks->pick[last].y = at[3];
+}
+
+static int run(const struct options *options)
+{
+    struct client client = {0};
+    struct picks picks = {.n = options->has_section ? options->samples : 1,
+                          .request = options->request,
+                          .frame = SHEEN_FRAME_DEFAULTS};
+    picks.request.window.width_px = options->request.width_px;
+    picks.request.window.height_px = options->request.height_px;
+    picks.request.width_px = picks.request.height_px = 1;
+    picks.request.planes = PICK_PLANES;
+    picks.request.format = SHEEN_FORMAT_RAW;
+    picks.pick = calloc(picks.n, sizeof(*picks.pick));
+    if (!picks.pick)
+        return client_finish(&client, failure_set(&client.error, SHEEN_NO_MEMORY,
+                                                  "no memory for %zu samples", picks.n));
+    set_places(&picks, options->at);
+    enum sheen_status status = client_init(&client, options);
+    if (!status)
+        status = ask(&client, options, &picks);
+    while (status && client_resume(&client, options, &status))
+        status = ask(&client, options, &picks);
+    progress_clear(&client.progress);
+    if (!status)
+        status = print(&client, options, &picks);
+    sheen_frame_finish(&picks.frame);
+    free(picks.pick);
+    return client_finish(&client, status);
+}
+
+static bool apply_section(struct options *options, const char *value, char *why)
+{
+    options->has_section = true;
+    return value_numbers(value, options->at, 4) ||
+           options_refuse(why, "must be four numbers X0,Y0,X1,Y1");
+}
+
+static bool apply_samples(struct options *options, const char *value, char *why)
+{
+    options->given |= GIVEN_SAMPLES;
+    return options_whole(&OPTION_RANGES[OPTION_RANGE_SAMPLES], value, &options->samples, why);
+}
+
+static bool check_inside(const struct options *options, double x, double y, char *why)
+{
+    const struct sheen_request *request = &options->request;
+    return (x >= 0 && y >= 0 && x < request->width_px && y < request->height_px) ||
+           options_refuse(why,
+                          "%.9g,%.9g is not in the picture, whose pixels are 0,0 to %u,%u (--size)",
+                          x, y, request->width_px - 1, request->height_px - 1);
+}
+
+static bool check(struct options *options, char *why)
+{
+    if (options->has_section && options->argument)
+        return options_refuse(why, "X,Y and --section exclude each other");
+    if (!options->has_section && options->given & GIVEN_SAMPLES)
+        return options_refuse(why, "--samples is for --section");
+    if (!options->has_section) {
+        if (!options->argument)
+            return options_refuse(why, "a pixel X,Y or --section is missing");
+        if (!value_numbers(options->argument, options->at, 2))
+            return options_refuse(why, "'%.60s': a pixel is two numbers X,Y", options->argument);
+        options->at[2] = options->at[0];
+        options->at[3] = options->at[1];
+    }
+    if (!(options->given & GIVEN_SAMPLES))
+        options->samples = 100;
+    return check_inside(options, options->at[0], options->at[1], why) &&
+           check_inside(options, options->at[2], options->at[3], why) &&
+           options_check_scene(options, why);
+}
+
+static const struct option_row ROWS[] = {
+    {"section", 0, "X0,Y0,X1,Y1",
+     "instead of one pixel, places along a line of the picture, both ends included;\n"
+     "prints a line of CSV for each, with empty fields where there is no number",
+     apply_section, NULL},
+    {"samples", 0, "N", "number of places of --section, {} (default: 100)", apply_samples, NULL},
+    {0},
+};
+
+static const struct option_row *const TABLES[] = {
+    ROWS,           OPTIONS_SIZE,      OPTIONS_SCENE,  OPTIONS_MODEL,
+    OPTIONS_COMMON, OPTIONS_RECONNECT, OPTIONS_OUTPUT, NULL};
+
+const struct command COMMAND_PICK = {
+    .name = "pick",
+    .arguments = "MODEL X,Y [option]...",
+    .summary =
+        "Prints the numbers of the surface at a pixel of the picture that the other options\n"
+        "describe: point, normal, principal curvatures, smallest radius of curvature, Ptex face\n"
+        "with u and v, and the place s, t on the light. 0,0 is the top left pixel; fractions lie\n"
+        "between the centres of pixels. The numbers are those of the planes of 'sheen render'.",
+    .tables = TABLES,
+    .examples = "  sheen pick hood.obj 640,360\n"
+                "  sheen pick hood.obj 120.5,80 --size 320x200 --view left --json\n"
+                "  sheen pick hood.obj --section 0,360,1279,360 --samples 200 > section.csv\n",
+    .takes_model = true,
+    .takes_argument = true,
+    .check = check,
+    .codes = CODE_FILES | CODE_SERVER,
+    .run = run,
+};
