@@ -461,9 +461,10 @@ static bool check_window(const sheen_Render *render, char text[static MESSAGE_TE
         return false;
     return (floor(window->x_px) + render->width_px <= window->width_px &&
             floor(window->y_px) + render->height_px <= window->height_px) ||
-           refuse(text, "window: %ux%u pixels at %.9g,%.9g are not inside of a picture of %ux%u",
-                  render->width_px, render->height_px, window->x_px, window->y_px, window->width_px,
-                  window->height_px);
+           check_refuse(text,
+                        "window: %ux%u pixels at %.9g,%.9g are not inside of a picture of %ux%u",
+                        render->width_px, render->height_px, window->x_px, window->y_px,
+                        window->width_px, window->height_px);
 }
 
 bool message_check_render(const sheen_Render *render, uint32_t max_width_px, uint32_t max_height_px,

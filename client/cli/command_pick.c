@@ -63,7 +63,7 @@ static double radius(const struct pick *pick)
     return 1 / fmax(fabs((double)pick->curvature[0]), fabs((double)pick->curvature[1]));
 }
 
-static enum sheen_status send(struct client *client, struct picks *picks)
+static enum sheen_status send_pick(struct client *client, struct picks *picks)
 {
     const struct pick *pick = &picks->pick[picks->n_sent];
     picks->request.window.x_px = pick->x;
@@ -74,7 +74,7 @@ static enum sheen_status send(struct client *client, struct picks *picks)
     return status;
 }
 
-static enum sheen_status receive(struct client *client, struct picks *picks)
+static enum sheen_status receive_pick(struct client *client, struct picks *picks)
 {
     struct pick *pick = &picks->pick[picks->n_answered];
     enum sheen_status status =
@@ -105,9 +105,9 @@ static enum sheen_status ask(struct client *client, const struct options *option
     picks->n_sent = picks->n_answered;
     while (!status && picks->n_answered < picks->n) {
         if (picks->n_sent < picks->n && picks->n_sent - picks->n_answered < server.max_in_flight)
-            status = send(client, picks);
+            status = send_pick(client, picks);
         else
-            status = receive(client, picks);
+            status = receive_pick(client, picks);
     }
     return status;
 }
