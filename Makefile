@@ -247,7 +247,7 @@ $(BUILD)/gen/edge_rays.inc: shaders/rounded.glsl shaders/lanes/constant.py shade
 # libraries) takes. It is not installed.
 $(BUILD)/sheend-faults: $(call obj,tests/service/faults.c tests/service/taken_over.c tests/service/allocations.c) $(filter-out %/server/base/fault.c.o,$(SERVER_OBJ))
 	$(call say,LD $@)
-	$(Q)$(CC) $(LDFLAGS) -Wl,--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=strdup,--wrap=strndup,--wrap=limit_build_faces -o $@ $^ $(SERVER_LIBS)
+	$(Q)$(CC) $(LDFLAGS) -Wl,--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=strdup,--wrap=strndup,--wrap=limit_build_faces,--wrap=program_create -o $@ $^ $(SERVER_LIBS)
 
 # --- tests ---------------------------------------------------------------------------------------
 # Every test links everything except the two mains.

@@ -69,7 +69,9 @@ done
 room server/render "$common|protocol|server/image|server/scene|server/surface" 'what every device needs, so no GL'
 room server/render/gl/context "$common|server/image" 'a context knows nothing of what is drawn in it'
 room server/render/gl/programs "$common|server/scene" 'a program is a text and a name, whatever it draws'
-room server/render/gl "$common|server/image|server/scene|server/render|server/render/gl/context|server/render/gl/programs" \
+room server/render/gl/maker "$common|server/image|server/scene|server/render/gl|server/render/gl/context|server/render/gl/programs" \
+    'what runs on the thread that makes programs'
+room server/render/gl "$common|server/image|server/scene|server/render|server/render/gl/context|server/render/gl/maker|server/render/gl/programs" \
     'a device draws, it serves nobody'
 room server/render/native "$common|protocol|server/image|server/scene|server/surface|server/render|server/render/native/clip|server/render/native/frame|server/render/native/lanes|server/render/native/polygons|server/render/native/programs|server/render/native/rays" \
     'processors draw without GL'
@@ -118,7 +120,8 @@ only_in '\b(posix_spawnp?|vfork|exec[lv][a-z]*|system|popen)\(|[=?:] v?fork\(' '
     protocol/child.c server/sandbox/zygote.c server/threads/starter.c
 only_in '\bSSL_|openssl/ssl' 'TLS' 'server client protocol' protocol/tls.c
 only_in 'pthread_|<threads\.h>' 'threads' 'server/cage server/surface server/scene server/curves server/render server/image server/sandbox protocol' \
-    server/render/native/team.c server/surface/subdivision/maker.c
+    server/render/native/team.c server/render/gl/programs/kept_programs.c server/render/gl/maker/maker.c \
+    server/surface/subdivision/maker.c
 only_in '<[a-z0-9]*intrin\.h>|\b_mm[0-9]*_' 'intrinsics' 'server client protocol' server/render/native/
 only_in '\b(strcpy|strcat|sprintf|vsprintf|gets|atoi|atof|alloca)\(' 'banned functions' \
     'server client protocol'

@@ -63,7 +63,7 @@ static void refuse(struct request *request, sheen_ErrorCode code, const char *te
 void request_end(struct request *request)
 {
     leave_client(request);
-    if (request->state == REQUEST_PARKED)
+    if (request->state == REQUEST_PARKED || request->state == REQUEST_PROGRAMS)
         LIST_REMOVE(request, parked_link);
     request_state_move(&request->state, REQUEST_ENDED);
     scheduler_finished(&request->host->scheduler, &request->entry);

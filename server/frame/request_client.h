@@ -35,10 +35,12 @@ struct request_host {
     struct scheduler scheduler;
     struct parties parties;
     struct costs costs;
-    struct request_list parked;  /* requests that wait until other frames free memory */
-    unsigned n_file_loads;       /* files being read from the folder */
-    struct compute_line in_line; /* computations that wait, in the order of their coming */
-    unsigned n_computing;        /* computations that run */
+    struct request_list parked;    /* requests that wait until other frames free memory */
+    struct request_list preparing; /* requests that wait for the device's programs */
+    uint32_t wakes;                /* the latest render_thread_wakes() that they were told */
+    unsigned n_file_loads;         /* files being read from the folder */
+    struct compute_line in_line;   /* computations that wait, in the order of their coming */
+    unsigned n_computing;          /* computations that run */
 };
 
 /* The events by which a request reports to its client's session. Each request calls exactly one of

@@ -163,6 +163,7 @@ void request_queue_frame(struct request *request)
     request->frame_work = (struct frame_work){.request = asked,
                                               .tile_px = cut.tile_px,
                                               .in_place = cut.in_place,
+                                              .asker = (uintptr_t)request->party,
                                               .watch = {is_abandoned, request}};
     request->cost_key = cost_key(request);
     request->entry.estimate_us =
@@ -244,6 +245,7 @@ static void step_run(struct task *task, void *context)
     struct request *request = task->owner;
     uint64_t start_us = clock_now_us();
     request->step = FRAME_FAILED;
+    request->wakes = render_thread_wakes(request->host->render_thread);
     if (has_begun(request) ||
         renderer_begin(context, &request->frame_work, &request->frame, &request->failure))
         request->step = renderer_step(context, request->model.asset->model->gpu,
@@ -265,6 +267,39 @@ static void note_polygons(const struct request *request)
     asset->drawn_levels |= 1u << surface->level;
 }
 
+/* --- programs: the device makes them */
+
+static void continue_drawing(struct request *request)
+{
+    request_state_move(&request->state, REQUEST_QUEUED);
+    scheduler_resume(&request->entry);
+}
+
+static void wait_for_programs(struct request *request)
+{
+    struct request_host *host = request->host;
+    request_state_move(&request->state, REQUEST_PROGRAMS);
+    LIST_INSERT_HEAD(&host->preparing, request, parked_link);
+    /* The frame may have been told to continue before the loop knew that it waits. */
+    if (request->wakes != render_thread_wakes(host->render_thread)) {
+        LIST_REMOVE(request, parked_link);
+        continue_drawing(request);
+    }
+}
+
+static void wake_preparing(struct request_host *host)
+{
+    uint32_t wakes = render_thread_wakes(host->render_thread);
+    if (wakes == host->wakes)
+        return;
+    host->wakes = wakes;
+    while (!LIST_EMPTY(&host->preparing)) {
+        struct request *request = LIST_FIRST(&host->preparing);
+        LIST_REMOVE(request, parked_link);
+        continue_drawing(request);
+    }
+}
+
 static void step_done(struct task *task)
 {
     struct request *request = task->owner;
@@ -273,7 +308,8 @@ static void step_done(struct task *task)
                       request->step == FRAME_MORE);
     memory_set_held(host->memory, request->held_bytes);
     /* The device has the planes of an exact frame after its first tile. */
-    if (request->step != FRAME_MORE || request->frame_request.surface.kind == SURFACE_EXACT)
+    if (request->step != FRAME_PROGRAMS &&
+        (request->step != FRAME_MORE || request->frame_request.surface.kind == SURFACE_EXACT))
         memory_charge_drawn(request->charge);
     if (request->frame_work.has_drawn && request->step != FRAME_FAILED) {
         note_polygons(request);
@@ -287,6 +323,8 @@ static void step_done(struct task *task)
         request_fail(request, &request->failure);
     else if (request->step == FRAME_POLYGONS)
         start_polygons(request);
+    else if (request->step == FRAME_PROGRAMS)
+        wait_for_programs(request);
     else if (request->step == FRAME_DONE)
         frame_drawn(request);
     else
@@ -341,6 +379,7 @@ static void wake_parked(struct request_host *host)
 void request_start_next(struct request_host *host)
 {
     wake_parked(host);
+    wake_preparing(host);
     for (struct schedule_entry *entry; (entry = scheduler_next(&host->scheduler));) {
         struct request *request = entry->owner;
         if (request_is_late(request, clock_now_us())) {

@@ -28,7 +28,7 @@ struct request {
     struct party *party;             /* the client's; the request holds a reference of its own */
     struct request_client *client;   /* NULL: it has gone, or the request was answered early */
     LIST_ENTRY(request) client_link; /* while there is a client */
-    LIST_ENTRY(request) parked_link; /* while REQUEST_PARKED */
+    LIST_ENTRY(request) parked_link; /* while REQUEST_PARKED or REQUEST_PROGRAMS */
     struct reply *reply;             /* valid while there is a client */
     uint32_t seq;
     uint8_t assets_of[OWNER_BYTES]; /* copied, because the client may go first */
@@ -57,6 +57,7 @@ struct request {
     atomic_bool abandoned; /* true: no client waits; other threads read it and stop early */
     struct frame_work frame_work;
     enum frame_step step;
+    uint32_t wakes;   /* render_thread_wakes() before the latest step */
     uint64_t step_us; /* what the latest step took on the render thread */
     struct frame frame;
     sheen_Times times;

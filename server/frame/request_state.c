@@ -17,11 +17,12 @@ static const struct {
                          TO(POLYGONS) | TO(QUEUED) | TO(IN_LINE) | TO(ABANDONED) | TO(ENDED),
                          false},
     [REQUEST_POLYGONS] = {"polygons", TO(QUEUED) | TO(ENDED), false},
+    [REQUEST_PROGRAMS] = {"programs", TO(QUEUED) | TO(ENDED), false},
     [REQUEST_QUEUED] = {"queued", TO(PARKED) | TO(DRAWING) | TO(ENDED), false},
     [REQUEST_PARKED] = {"parked", TO(QUEUED) | TO(ENDED), false},
     [REQUEST_DRAWING] = {"drawing",
-                         TO(QUEUED) | TO(POLYGONS) | TO(PAINTING) | TO(ENCODING) | TO(ABANDONED) |
-                             TO(ENDED),
+                         TO(QUEUED) | TO(POLYGONS) | TO(PROGRAMS) | TO(PAINTING) | TO(ENCODING) |
+                             TO(ABANDONED) | TO(ENDED),
                          true},
     [REQUEST_PAINTING] = {"painting", TO(ENCODING) | TO(ABANDONED), true},
     [REQUEST_ENCODING] = {"encoding", TO(HELD) | TO(ABANDONED) | TO(ENDED), true},

@@ -9,6 +9,7 @@
 enum request_state {
     REQUEST_LOADING,   /* the initial state: the store builds assets, or a file is read */
     REQUEST_POLYGONS,  /* the store makes polygons for the device */
+    REQUEST_PROGRAMS,  /* the device makes programs for the frame */
     REQUEST_QUEUED,    /* waits until the scheduler lets it draw a tile */
     REQUEST_PARKED,    /* waits for memory that other frames use */
     REQUEST_DRAWING,   /* the render thread draws a tile */

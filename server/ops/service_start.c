@@ -44,6 +44,7 @@ static struct render_thread *open_device(struct service *service, struct error *
         const struct renderer_options renderer = {
             .device = tries[i].device,
             .n_threads = (unsigned)options->n_native_threads,
+            .warm_up = !service->single,
             .isa = strcmp(options->native_isa, "auto") == 0 ? NULL : options->native_isa,
             .block_cache = daemon->block_cache};
         thread = render_thread_create(tries[i].kind, &renderer, daemon->completions, error);

@@ -17,7 +17,12 @@ struct renderer_options {
     /* Called on the render thread whenever the device is lost, and whenever opening it again fails.
      * May be NULL. */
     void (*lost)(void *owner);
+    /* Called on any thread, until the renderer is destroyed, when frames that wait after
+     * FRAME_PROGRAMS may continue. It must not call the renderer. NULL: a step waits itself, and
+     * never returns FRAME_PROGRAMS. */
+    void (*woken)(void *owner);
     void *owner;
+    bool warm_up; /* prepare for usual frames while no frame waits for programs */
     struct block_cache *block_cache; /* memory of frames, outlives them; NULL: malloc() */
     /* For tests: */
     /* Pretend that the device's tables have at most so many texels; 0: ask the device. */

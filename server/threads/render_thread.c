@@ -14,13 +14,21 @@ struct render_thread {
     struct renderer_info info;
     char device[RENDERER_NAME_BYTES], driver[RENDERER_NAME_BYTES];
     struct pool *pool; /* a pool of one thread */
-    atomic_uint losses;
+    atomic_uint losses, wakes;
+    struct completions *completions;
 };
 
 static void device_lost(void *owner)
 {
     struct render_thread *thread = owner;
     atomic_fetch_add(&thread->losses, 1);
+}
+
+static void frames_woken(void *owner)
+{
+    struct render_thread *thread = owner;
+    atomic_fetch_add(&thread->wakes, 1);
+    completions_wake(thread->completions);
 }
 
 static bool open_device(void *owner, void **context, struct error *error)
@@ -55,8 +63,11 @@ struct render_thread *render_thread_create(const struct renderer_device *device,
     thread->kind = device;
     thread->options = *options;
     thread->options.lost = device_lost;
+    thread->options.woken = frames_woken;
     thread->options.owner = thread;
+    thread->completions = completions;
     atomic_init(&thread->losses, 0);
+    atomic_init(&thread->wakes, 0);
     const struct pool_context context = {open_device, close_device, thread};
     thread->pool = pool_create("sheend-gl", 1, 0, &context, completions, error);
     if (!thread->pool) {
@@ -92,6 +103,11 @@ const struct renderer_info *render_thread_info(const struct render_thread *threa
 uint32_t render_thread_losses(const struct render_thread *thread)
 {
     return atomic_load(&thread->losses);
+}
+
+uint32_t render_thread_wakes(const struct render_thread *thread)
+{
+    return atomic_load(&thread->wakes);
 }
 
 uint64_t render_thread_busy_us(const struct render_thread *thread, uint64_t now_us)

@@ -26,6 +26,10 @@ void render_thread_submit(struct render_thread *thread, struct task *task);
 /* How often the device was lost, or could not be opened again. */
 uint32_t render_thread_losses(const struct render_thread *thread);
 
+/* How often frames that wait for the device's programs (FRAME_PROGRAMS) were told to continue. Any
+ * thread; after each time the loop's hook runs. */
+uint32_t render_thread_wakes(const struct render_thread *thread);
+
 /* As pool_busy_us(). */
 uint64_t render_thread_busy_us(const struct render_thread *thread, uint64_t now_us);
 

@@ -60,15 +60,21 @@ void completions_destroy(struct completions *completions)
     free(completions);
 }
 
+void completions_wake(struct completions *completions)
+{
+    const uint64_t one = 1;
+    if (write(completions->event_fd, &one, sizeof one) < 0 && errno != EAGAIN)
+        abort(); /* EAGAIN: the counter is full, so it is signalled already */
+}
+
 void completions_post(struct completions *completions, struct task *task)
 {
     pthread_mutex_lock(&completions->lock);
     bool was_empty = STAILQ_EMPTY(&completions->list);
     STAILQ_INSERT_TAIL(&completions->list, task, link);
     pthread_mutex_unlock(&completions->lock);
-    const uint64_t one = 1;
-    if (was_empty && write(completions->event_fd, &one, sizeof one) < 0 && errno != EAGAIN)
-        abort(); /* EAGAIN: the counter is full, so it is signalled already */
+    if (was_empty)
+        completions_wake(completions);
 }
 
 void completions_deliver(struct completions *completions)

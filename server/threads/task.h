@@ -28,6 +28,8 @@ struct completions;
 struct completions *completions_create(struct loop *loop, struct error *error);
 void completions_destroy(struct completions *completions);                 /* NULL is safe */
 void completions_post(struct completions *completions, struct task *task); /* any thread */
+/* Makes the loop run its hook after a batch, without a task. Any thread. */
+void completions_wake(struct completions *completions);
 /* Calls done() of all finished tasks. The loop does so by itself; after the loop has stopped, the
  * daemon calls this a last time. */
 void completions_deliver(struct completions *completions);

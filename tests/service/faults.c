@@ -1,8 +1,9 @@
 /* fault_at() of build/sheend-faults. $SHEEN_FAULTS has "NAME:FIRST:TIMES,...": the fault point NAME
  * fails at its FIRST-th call and at each FIRST-th call after it, TIMES times in all. Faults that
- * happen are reported on standard error. Two faults lie outside of sheend's own code, in a thread
- * that builds a model's tables: at "tables.stuck" the thread never returns, and at "taken.over" (on
- * a GL device "taken.over.gl") it tries forbidden system calls. */
+ * happen are reported on standard error. Some faults lie outside of sheend's own code: in a thread
+ * that builds a model's tables, which at "tables.stuck" never returns, and at "taken.over" (on a GL
+ * device "taken.over.gl") tries forbidden system calls; and in the GL driver's compiler, which at
+ * "lattice.stuck" never returns from a program for lattices. */
 #include "server/base/fault.h"
 
 #include <stdatomic.h>
@@ -11,6 +12,8 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "server/render/gl/programs/program.h"
+#include "server/scene/scene.h"
 #include "server/surface/subdivision/build.h"
 #include "tests/service/taken_over.h"
 
@@ -71,5 +74,16 @@ bool __wrap_limit_build_faces(struct limit_tables *tables, const struct limit_pl
     if (fault_at("taken.over.gl"))
         taken_over(true);
     return __real_limit_build_faces(tables, plan, first, last, watch, error);
+}
+
+__typeof__(program_create) __real_program_create, __wrap_program_create;
+
+GLuint __wrap_program_create(const struct program_source *source, struct error *error)
+{
+    char lattice[32];
+    snprintf(lattice, sizeof lattice, "#define PATTERN %d\n", PATTERN_LATTICE);
+    if (strstr(source->defines, lattice) && fault_at("lattice.stuck"))
+        sleep(600);
+    return __real_program_create(source, error);
 }
 /* NOLINTEND */

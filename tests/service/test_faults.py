@@ -372,6 +372,30 @@ class TakenOver(unittest.TestCase):
         self.assertEqual(self.refused("taken.over.gl", "--device", MESA), 31)
 
 
+@unittest.skipIf(MESA is None, "no GL device")
+class StuckCompiler(unittest.TestCase):
+    """The driver's compiler never returns from a program for lattices."""
+    LATTICE = wire.field(5, wire.field(6, wire.field(1, 1)))
+
+    def test_frames_whose_programs_exist_are_drawn(self):
+        server = FaultyDaemon("lattice.stuck:1:1", "--device", MESA)
+        self.addCleanup(server.process.kill)
+        with wire.Client(server.unix, minor=1) as first, wire.Client(server.unix) as second:
+            model = first.upload(CUBE, "cube.obj", share=True)
+            expected = first.render(model).data
+            lattices = [first.ask(model, extra=self.LATTICE, kind=wire.BATCH) for _ in range(2)]
+            server.wait_for("fault: lattice.stuck")
+            for client in (second, first):
+                for _ in range(3):
+                    self.assertEqual(client.render(model).data, expected)
+            for seq in lattices:
+                first.send(wire.message(wire.CANCEL, seq))
+            cancelled = [first.answer() for _ in lattices]
+            self.assertEqual({seq for seq, _ in cancelled}, set(lattices))
+            self.assertEqual({error.code for _, error in cancelled}, {wire.ERROR_CANCELLED})
+            self.assertEqual(second.render(model).data, expected)
+
+
 class Killed(unittest.TestCase):
     """kill -9 of the daemon or of its client while a model is uploaded, built and drawn."""
     ROUNDS = int(os.environ.get("SHEEN_KILLS", "6"))

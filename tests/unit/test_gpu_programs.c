@@ -1,5 +1,5 @@
-/* The programs that are kept on the device: one is made in each step, and no more are kept than
- * there is room for. */
+/* The programs that are kept on the device: frames hold what they wait for, each program runs first in
+ * a step of its own, and no more are kept than there is room for. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -106,23 +106,6 @@ static void test_soft(void **state)
     scene_finish(&scene);
 }
 
-/* Frames that take turns cannot prevent each other from being drawn. */
-static void test_ends(void **state)
-{
-    (void)state;
-    struct scene scene;
-    scene_init(&scene, tetrahedron);
-    struct error error = {0};
-    struct frame frame;
-    struct frame_work work = {.request = &scene.request};
-    assert_true(renderer_begin(scene.renderer, &work, &frame, &error));
-    /* the other frames have removed all of its programs */
-    gl_frame_of(&work)->n_programs = MAX_FRAME_PROGRAMS;
-    assert_int_equal(step(&scene, &work, &frame), FRAME_DONE);
-    frame_finish(&frame);
-    scene_finish(&scene);
-}
-
 /* How many programs the context has. Counting kept names would not do: a name may belong to another
  * program by now. */
 static int count_programs(void)
@@ -133,68 +116,175 @@ static int count_programs(void)
     return n;
 }
 
-/* The key of the i-th of many programs that compile quickly. */
-static struct shade_key key(int i)
+/* The i-th of many programs. */
+static struct program_id numbered(int i)
 {
-    return (struct shade_key){.family = (uint8_t)(i / 28),
-                              .light = (uint8_t)(i / 7 % 4),
-                              .pattern = (uint8_t)(i % 7),
-                              .which = SHADED_PLANES};
+    return (struct program_id){.set = SET_SHADING,
+                               .shading = {.family = (uint8_t)(i / 28),
+                                           .light = (uint8_t)(i / 7 % 4),
+                                           .pattern = (uint8_t)(i % 7),
+                                           .which = SHADED_PLANES}};
 }
 
-/* If there is no room left, the program that was used longest ago is removed. */
+/* Takes the next order and fulfils it, as the maker does. Returns its pattern; -1: no order. */
+static int make_next(struct kept_programs *programs, GLuint name)
+{
+    struct program_id id;
+    struct error error;
+    int at;
+    error_set(&error, ERROR_DEVICE, "the driver fails");
+    if (!kept_programs_take_order(programs, &id, &at))
+        return -1;
+    kept_programs_finish_order(programs, at, name, &error);
+    return id.shading.pattern;
+}
+
+/* Holds `n` programs from the first on, and makes empty programs for those that are missing. */
+static void hold(struct kept_programs *programs, struct program_hold *held, int first, int n)
+{
+    struct error error = {0};
+    struct program_id ids[MAX_FRAME_PROGRAMS];
+    for (int i = 0; i < n; i++)
+        ids[i] = numbered(first + i);
+    while (kept_programs_hold(programs, held, ids, n, 1, &error) != HOLD_READY) {
+        assert_non_null(held->programs);
+        make_next(programs, glCreateProgram());
+    }
+}
+
+/* If there is no room left, the program that was used longest ago is removed, but none that a frame
+ * holds. */
 static void test_room(void **state)
 {
     (void)state;
+    enum { HALF = MAX_KEPT_PROGRAMS / 2 };
     struct scene scene;
-    struct error error = {0};
-    static struct shade_programs programs;
     scene_init(&scene, tetrahedron);
-    programs = (struct shade_programs){0};
-    shade_programs_begin(&programs);
-    for (int i = 0; i < MAX_SHADE_PROGRAMS; i++) {
-        assert_null(shade_programs_find(&programs, key(i)));
-        if (!shade_programs_compile(&programs, key(i), &error))
-            fail_msg("%s", error.text);
-        if (i == 2)
-            shade_programs_begin(&programs);
-    }
-    shade_programs_begin(&programs);
-    assert_non_null(shade_programs_find(&programs, key(0)));
+    struct kept_programs *programs = kept_programs_create(NULL, NULL);
+    struct program_hold held = {0}, other = {0};
+    hold(programs, &held, 0, HALF);
+    program_hold_end(&held);
+    hold(programs, &held, HALF, HALF);
+    program_hold_end(&held);
     int n = count_programs();
-    assert_non_null(shade_programs_compile(&programs, key(MAX_SHADE_PROGRAMS), &error));
-    assert_non_null(shade_programs_compile(&programs, key(MAX_SHADE_PROGRAMS + 1), &error));
-    for (int i = 0; i < MAX_SHADE_PROGRAMS + 2; i++)
-        assert_int_equal(shade_programs_find(&programs, key(i)) == NULL, i == 1 || i == 2);
+    hold(programs, &held, 0, 1); /* now the first is the one used last */
+    program_hold_end(&held);
+    hold(programs, &held, 1, 1);
+    hold(programs, &other, 2 * HALF, HALF);
+    program_hold_end(&other);
     assert_int_equal(count_programs(), n);
+    for (int i = 0; i < 3 * HALF; i++) {
+        const struct program_id id = numbered(i);
+        bool is_kept = kept_programs_find(programs, &id, NULL) != 0;
+        if (is_kept != (i < 2 || i >= HALF + 2))
+            fail_msg("program %d", i);
+    }
+    program_hold_end(&held);
+    kept_programs_release(programs);
     scene_finish(&scene);
 }
 
-/* Models of any number of different sizes are drawn, and the programs used last are kept. */
-static void test_table_sets(void **state)
+/* A frame for whose programs there is no room, because other frames hold theirs, waits until one of
+ * these is drawn or given up. */
+static void test_full(void **state)
 {
     (void)state;
     struct scene scene;
     struct error error = {0};
-    struct gl_model model = {.points.n = 1, .nodes.n = 1, .adjacency.n = 1};
     scene_init(&scene, tetrahedron);
-    GLuint first = programs_of(gl_renderer_of(scene.renderer), &model, false, &error)->evaluate;
-    for (model.points.n = 2; model.points.n <= MAX_PROGRAM_SETS; model.points.n++)
-        assert_non_null(programs_of(gl_renderer_of(scene.renderer), &model, false, &error));
-    model.points.n = 1;
-    assert_int_equal(programs_of(gl_renderer_of(scene.renderer), &model, false, &error)->evaluate,
-                     first);
-    int n = count_programs();
-    for (int k = 1; k <= 2; k++) {
-        model.points.n = MAX_PROGRAM_SETS + k;
-        if (!programs_of(gl_renderer_of(scene.renderer), &model, k == 1, &error))
-            fail_msg("%s", error.text);
+    struct kept_programs *programs = kept_programs_create(NULL, NULL);
+    struct program_hold first = {0}, second = {0}, third = {0};
+    const struct program_id one_more = numbered(MAX_KEPT_PROGRAMS);
+    hold(programs, &first, 0, MAX_KEPT_PROGRAMS - MAX_FRAME_PROGRAMS);
+    hold(programs, &second, MAX_KEPT_PROGRAMS - MAX_FRAME_PROGRAMS, MAX_FRAME_PROGRAMS);
+    assert_int_equal(kept_programs_hold(programs, &third, &one_more, 1, 1, &error), HOLD_WAITS);
+    assert_null(third.programs);
+    program_hold_end(&first);
+    kept_programs_wait(programs);
+    hold(programs, &third, MAX_KEPT_PROGRAMS, 1);
+    for (int i = MAX_KEPT_PROGRAMS - MAX_FRAME_PROGRAMS; i <= MAX_KEPT_PROGRAMS; i++) {
+        const struct program_id id = numbered(i);
+        assert_true(kept_programs_find(programs, &id, NULL));
     }
-    assert_int_equal(count_programs(), n);
-    model.points.n = 1; /* this program was used after the others */
-    assert_int_equal(programs_of(gl_renderer_of(scene.renderer), &model, false, &error)->evaluate,
-                     first);
-    assert_int_equal(draw_anew(&scene, &scene.request), 4);
+    program_hold_end(&second);
+    program_hold_end(&third);
+    kept_programs_release(programs);
+    scene_finish(&scene);
+}
+
+static void count_wake(void *owner)
+{
+    ++*(int *)owner;
+}
+
+/* Programs are made in turns for those who ask, then ahead of use; not for frames that are given
+ * up; and a failure is told to all who wait, once. The list alone, without a device. */
+static void test_orders(void **state)
+{
+    (void)state;
+    int wakes = 0;
+    struct error error = {0};
+    struct kept_programs *programs = kept_programs_create(count_wake, &wakes);
+    const struct program_id greedy[] = {numbered(0), numbered(1), numbered(2)}, small = numbered(3),
+                            ahead = numbered(4), given_up = numbered(5);
+    struct program_hold a = {0}, b = {0}, c = {0};
+    kept_programs_order(programs, &ahead);
+    assert_int_equal(kept_programs_hold(programs, &a, greedy, 3, 1, &error), HOLD_WAITS);
+    assert_int_equal(kept_programs_hold(programs, &b, &small, 1, 2, &error), HOLD_WAITS);
+    assert_int_equal(kept_programs_hold(programs, &c, &given_up, 1, 3, &error), HOLD_WAITS);
+    program_hold_end(&c);
+    const int order[] = {0, 3, 1, 2, 4};
+    for (GLuint i = 0; i < 5; i++) {
+        assert_int_equal(make_next(programs, 100 + i), order[i]);
+        assert_int_equal(wakes, i + 1);
+    }
+    assert_int_equal(kept_programs_hold(programs, &a, greedy, 3, 1, &error), HOLD_READY);
+    assert_int_equal(kept_programs_hold(programs, &b, &small, 1, 2, &error), HOLD_READY);
+    assert_int_equal(kept_programs_count(programs), 5);
+    program_hold_end(&a);
+    program_hold_end(&b);
+
+    assert_int_equal(kept_programs_hold(programs, &a, &given_up, 1, 1, &error), HOLD_WAITS);
+    assert_int_equal(kept_programs_hold(programs, &b, &given_up, 1, 2, &error), HOLD_WAITS);
+    assert_int_equal(make_next(programs, 0), 5);
+    assert_int_equal(kept_programs_hold(programs, &a, &given_up, 1, 1, &error), HOLD_FAILED);
+    assert_int_equal(kept_programs_hold(programs, &b, &given_up, 1, 2, &error), HOLD_FAILED);
+    assert_string_equal(error.text, "the driver fails");
+    assert_int_equal(kept_programs_hold(programs, &b, &given_up, 1, 2, &error), HOLD_WAITS);
+    assert_int_equal(make_next(programs, 200), 5);
+    assert_int_equal(kept_programs_hold(programs, &b, &given_up, 1, 2, &error), HOLD_READY);
+    kept_programs_forget(programs); /* the device is lost: what is held is made again */
+    assert_int_equal(kept_programs_hold(programs, &b, &given_up, 1, 2, &error), HOLD_WAITS);
+    assert_int_equal(make_next(programs, 201), 5);
+    assert_int_equal(kept_programs_count(programs), 1);
+    kept_programs_close(programs);
+    assert_int_equal(make_next(programs, 0), -1);
+    wakes = 0;
+    kept_programs_release(programs); /* a frame may outlive the renderer */
+    program_hold_end(&b);
+    assert_int_equal(wakes, 0);
+}
+
+/* Models whose tables are divided in the same way share their programs. */
+static void test_layouts(void **state)
+{
+    (void)state;
+    struct scene scene;
+    struct program_id ids[4][TABLE_PROGRAMS];
+    scene_init(&scene, tetrahedron);
+    const struct gl_renderer *r = gl_renderer_of(scene.renderer);
+    struct gl_model model = {.points.n = 1, .nodes.n = 1, .adjacency.n = 1};
+    gl_model_programs(r, &model, false, ids[0]);
+    gl_model_programs(r, gl_model_of(scene.model), false, ids[1]);
+    gl_model_programs(r, &model, true, ids[2]);
+    model.points.n = 2;
+    gl_model_programs(r, &model, false, ids[3]);
+    for (int which = 0; which < TABLE_PROGRAMS; which++) {
+        assert_true(program_id_is_same(&ids[0][which], &ids[1][which]));
+        assert_false(program_id_is_same(&ids[0][which], &ids[2][which]));
+        assert_false(program_id_is_same(&ids[0][which], &ids[3][which]));
+        assert_false(program_id_is_same(&ids[0][which], &ids[0][(which + 1) % TABLE_PROGRAMS]));
+    }
     scene_finish(&scene);
 }
 
@@ -223,9 +313,13 @@ static void test_no_powers_of_two(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_one_a_step), cmocka_unit_test(test_soft),
-        cmocka_unit_test(test_ends),       cmocka_unit_test(test_room),
-        cmocka_unit_test(test_table_sets), cmocka_unit_test(test_no_powers_of_two),
+        cmocka_unit_test(test_one_a_step),
+        cmocka_unit_test(test_soft),
+        cmocka_unit_test(test_orders),
+        cmocka_unit_test(test_room),
+        cmocka_unit_test(test_full),
+        cmocka_unit_test(test_layouts),
+        cmocka_unit_test(test_no_powers_of_two),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "server/render/gl/device_internal.h"
+#include "server/render/gl/maker/maker.h"
 #include "server/render/gl/polygon_meshes.h"
 #include "server/render/gl/paused_tiles.h"
 #include "server/render/gl/stage_clock.h"
@@ -44,6 +45,9 @@ static void query_info(struct gl_renderer *r)
 static bool begin_context(struct gl_renderer *r, struct error *error)
 {
     r->context.number++;
+    r->maker = maker_create(&r->context.egl, r->programs, error);
+    if (!r->maker)
+        return false;
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
     stage_clock_init(r);
@@ -57,12 +61,34 @@ static bool begin_context(struct gl_renderer *r, struct error *error)
 static void destroy(struct renderer *renderer)
 {
     struct gl_renderer *r = gl_renderer_of(renderer);
+    maker_destroy(r->maker);
+    kept_programs_release(r->programs);
     /* GL objects end with their context. */
     egl_finish(&r->context.egl);
     patch_grids_finish(&r->grids);
     polygons_lose(&r->meshes);
     paused_tiles_release(r->paused_tiles);
     free(r);
+}
+
+/* Orders the programs of usual frames: one light around the model, planes of lines and curvature, and
+ * polygons; of models whose tables fit into one texture each. */
+static void warm_up(struct gl_renderer *r)
+{
+    static const struct frame_request usual = {.n_lights = 1,
+                                               .lights = {{.kind = LIGHT_TUNNEL}},
+                                               .count_light = true,
+                                               .planes = PLANE_LIGHT};
+    const struct gl_model model = {.points.n = 1, .nodes.n = 1, .adjacency.n = 1};
+    struct program_id ids[2 * TABLE_PROGRAMS + 2 + MAX_FRAME_PROGRAMS];
+    int n = 2 * TABLE_PROGRAMS;
+    gl_model_programs(r, &model, false, ids);
+    gl_model_programs(r, &model, true, ids + TABLE_PROGRAMS);
+    n += stage_shade_programs(&usual, ids + n);
+    ids[n++] = (struct program_id){.set = SET_SINGLE, .which = PROGRAM_POLYGONS};
+    ids[n++] = (struct program_id){.set = SET_SINGLE, .which = PROGRAM_WIREFRAME};
+    for (int i = 0; i < n; i++)
+        kept_programs_order(r->programs, &ids[i]);
 }
 
 static struct renderer *create(const struct renderer_options *options, struct error *error)
@@ -77,14 +103,14 @@ static struct renderer *create(const struct renderer_options *options, struct er
     r->context.lost = options->lost;
     r->context.owner = options->owner;
     r->paused_tiles = paused_tiles_create();
-    if (!r->paused_tiles) {
+    r->programs = kept_programs_create(options->woken, options->owner);
+    if (!r->paused_tiles || !r->programs) {
         error_set(error, ERROR_SERVER, "out of memory");
-        free(r);
+        destroy(&r->base);
         return NULL;
     }
     if (!egl_init(&r->context.egl, options->device ? options->device : "auto", error)) {
-        paused_tiles_release(r->paused_tiles);
-        free(r);
+        destroy(&r->base);
         return NULL;
     }
     query_info(r);
@@ -92,6 +118,8 @@ static struct renderer *create(const struct renderer_options *options, struct er
         destroy(&r->base);
         return NULL;
     }
+    if (options->warm_up)
+        warm_up(r);
     return &r->base;
 }
 
@@ -102,6 +130,8 @@ static bool make_ready(struct gl_renderer *r, struct error *error)
     if (!r->context.is_lost)
         return true;
     /* Only the copies in main memory remain; every GL name ended with the context. */
+    maker_destroy(r->maker);
+    kept_programs_forget(r->programs);
     polygons_lose(&r->meshes);
     const struct gl_renderer old = *r;
     *r = (struct gl_renderer){.base = old.base,
@@ -109,6 +139,7 @@ static bool make_ready(struct gl_renderer *r, struct error *error)
                               .max_texels = old.max_texels,
                               .grids = old.grids,
                               .paused_tiles = old.paused_tiles,
+                              .programs = old.programs,
                               .next_serial = old.next_serial};
     r->context.is_lost = false;
     memcpy(r->device, old.device, sizeof r->device);

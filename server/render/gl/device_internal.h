@@ -7,10 +7,12 @@
 #include "server/render/gl/context/context.h"
 #include "server/render/gl/planes.h"
 #include "server/render/gl/polygon_kept.h"
-#include "server/render/gl/programs/table_programs.h"
+#include "server/render/gl/programs/kept_programs.h"
 #include "server/render/gl/stages.h"
 #include "server/render/patch_grids.h"
 #include "server/render/tiles.h"
+
+struct maker;
 
 /* The tile that is drawn, as three rectangles of the picture. */
 struct drawing {
@@ -43,8 +45,9 @@ struct gl_renderer {
     struct patch_grids grids;
     struct polygon_meshes meshes;
     struct paused_tiles *paused_tiles; /* they stay allocated when the device is lost */
-    struct program_sets programs;
-    GLuint view_buffer; /* struct view_block */
+    struct kept_programs *programs;    /* they are made again when the device is lost */
+    struct maker *maker;               /* NULL while the device is lost */
+    GLuint view_buffer;                /* struct view_block */
     struct visibility_stage visibility;
     struct gather_stage gather;
     struct evaluate_stage evaluate;

@@ -2,7 +2,6 @@
 
 #include "server/base/fault.h"
 #include "server/render/gl/device_internal.h"
-#include "server/render/gl/programs/table_programs.h"
 #include "server/render/gl/stage_clock.h"
 #include "server/render/gl/shade.h"
 #include "server/render/gl/edges.h"
@@ -32,10 +31,9 @@ static bool draw_surface(struct gl_renderer *r, const struct gl_model *model,
     if (!patch_grids_choose(&r->grids, model->base.tables, &model->clusters, view, drawn, error))
         return false;
     patch_grids_move_blocks(&r->grids, at.x / COVER_BLOCK_PX, at.y / COVER_BLOCK_PX);
-    const struct table_programs *programs =
-        programs_of(r, model, request->planes & PLANE_PTEX, error);
-    if (!programs)
-        return false;
+    const struct table_programs found =
+        gl_model_find_programs(r, model, request->planes & PLANE_PTEX);
+    const struct table_programs *programs = &found;
     stage_clock_start(r);
     stage_visibility(r, model, programs);
     stage_gather(r);
@@ -192,6 +190,7 @@ static void destroy_state(struct frame_state *state)
 {
     struct gl_frame *own = (struct gl_frame *)(void *)state;
     tile_give_back(own);
+    program_hold_end(&own->hold);
     block_cache_give(own->block_cache, own);
 }
 
@@ -224,21 +223,31 @@ static bool upload_all(struct gl_renderer *r, struct gl_model *model,
     return ok;
 }
 
-/* Makes one of the missing programs that the next tile needs. Frames drawn in turn may evict each
- * other's programs; so a frame that has already made as many as one frame can need gets all the
- * missing ones in one step. */
-static bool prepare(struct gl_renderer *r, struct gl_frame *own, bool *is_ready,
-                    struct error *error)
+/* Holds the programs that the frame needs. */
+static enum hold_state hold_programs(struct gl_renderer *r, const struct gl_model *model,
+                                     struct gl_frame *own, struct error *error)
 {
-    bool ok;
-    do {
-        ok = stage_shade_prepare(r, own->work->request, is_ready, error);
-        own->n_programs += !*is_ready;
-    } while (ok && !*is_ready && own->n_programs > MAX_FRAME_PROGRAMS);
-    return ok;
+    const struct frame_request *request = own->work->request;
+    struct program_id ids[MAX_FRAME_PROGRAMS];
+    int n = 0;
+    if (is_of_polygons(request)) {
+        ids[n++] = (struct program_id){.set = SET_SINGLE, .which = PROGRAM_POLYGONS};
+        ids[n++] = (struct program_id){.set = SET_SINGLE, .which = PROGRAM_WIREFRAME};
+    } else {
+        gl_model_programs(r, model, request->planes & PLANE_PTEX, ids);
+        n = TABLE_PROGRAMS;
+    }
+    n += stage_shade_programs(request, ids + n);
+    for (;;) {
+        enum hold_state state =
+            kept_programs_hold(r->programs, &own->hold, ids, n, own->work->asker, error);
+        if (state != HOLD_WAITS || r->base.options.woken)
+            return state;
+        kept_programs_wait(r->programs);
+    }
 }
 
-/* *has_drawn: false if the step made a program instead, which may take as long as several tiles.
+/* *has_drawn: false if the step only ran a program for the first time.
  * *is_whole: the frame now holds the tile. */
 static bool step(struct gl_renderer *r, struct gl_model *model, struct gl_frame *own,
                  struct frame *frame, bool *has_drawn, bool *is_whole, struct error *error)
@@ -246,8 +255,6 @@ static bool step(struct gl_renderer *r, struct gl_model *model, struct gl_frame 
     const struct frame_work *work = own->work;
     const struct frame_request *request = work->request;
     struct view view;
-    if (!upload_all(r, model, request, error))
-        return false;
     if (own->x == 0 && own->y == 0)
         cut_frame(own);
     planes_choose(r, model, own);
@@ -261,8 +268,9 @@ static bool step(struct gl_renderer *r, struct gl_model *model, struct gl_frame 
     r->made = work->polygons;
     view_init(&view, &request->camera, request->width_px, request->height_px,
               model->base.tables->hull_min, model->base.tables->hull_max);
-    bool ok = frame_watch_check(&work->watch, error) && reserve(r, own, error) &&
-              prepare(r, own, has_drawn, error);
+    bool ok = frame_watch_check(&work->watch, error) && reserve(r, own, error);
+    if (ok)
+        stage_shade_first_run(r, request, has_drawn);
     if (ok && !*has_drawn)
         return !own->paused || tile_pause(r, model, own, error);
     *is_whole = true;
@@ -291,13 +299,20 @@ enum frame_step gl_frame_step(struct renderer *renderer, struct renderer_model *
          !polygons_have(&r->meshes, shown->serial, work->request->surface.level)))
         return FRAME_POLYGONS;
     bool is_whole = false;
-    if (!ready || !step(r, shown, own, frame, &work->has_drawn, &is_whole, error)) {
+    enum hold_state held = HOLD_FAILED;
+    if (ready && upload_all(r, shown, work->request, error))
+        held = hold_programs(r, shown, own, error);
+    if (held == HOLD_WAITS)
+        return FRAME_PROGRAMS;
+    if (held == HOLD_FAILED || !step(r, shown, own, frame, &work->has_drawn, &is_whole, error)) {
         /* If the device is lost, that is the error to report, whatever else failed. */
         if (context_check_lost(&r->context))
             error_set(error, ERROR_GPU_LOST,
                       "the GPU was lost while it drew this frame: ask again");
         return FRAME_FAILED;
     }
+    if (work->has_drawn)
+        program_hold_end(&own->hold);
     if (!is_whole)
         return FRAME_MORE;
     own->x += own->tile.width;

@@ -3,6 +3,7 @@
 #define SHEEN_RENDER_GL_FRAME_STATE_H
 
 #include "server/render/device.h"
+#include "server/render/gl/programs/kept_programs.h"
 #include "server/render/tiles.h"
 
 struct paused_tile;
@@ -19,7 +20,7 @@ struct gl_frame {
     uint32_t x, y;              /* of the next tile, px */
     enum tile_stage stage;      /* polygons: the next stage of the tile */
     size_t part;                /* polygons: the next part of the mesh in that stage */
-    unsigned n_programs;        /* programs made for this frame so far */
+    struct program_hold hold;   /* the programs of its tile */
     struct paused_tile *paused; /* the drawn part of its tile; NULL: nothing */
 };
 

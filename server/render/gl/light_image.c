@@ -11,23 +11,29 @@ size_t gl_image_bytes(const struct image *image)
     return (texels + texels / 3) * (image->is_float ? 8 : 4); /* RGBA16F or SRGB8_ALPHA8 */
 }
 
+GLuint light_texture_create(const struct image *pixels)
+{
+    GLuint texture;
+    GLsizei width = (GLsizei)pixels->width_px, height = (GLsizei)pixels->height_px;
+    GLsizei levels = 32 - __builtin_clz((unsigned)(width > height ? width : height));
+    glCreateTextures(GL_TEXTURE_2D, 1, &texture);
+    glTextureStorage2D(texture, levels, pixels->is_float ? GL_RGBA16F : GL_SRGB8_ALPHA8, width,
+                       height);
+    glTextureSubImage2D(texture, 0, 0, 0, width, height, GL_RGBA,
+                        pixels->is_float ? GL_FLOAT : GL_UNSIGNED_BYTE, pixels->pixels);
+    glGenerateTextureMipmap(texture);
+    glTextureParameteri(texture, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+    glTextureParameteri(texture, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+    glTextureParameteri(texture, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+    glTextureParameteri(texture, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+    return texture;
+}
+
 bool gl_image_upload(struct gl_renderer *r, struct gl_image *image, struct error *error)
 {
     if (context_is_current(&r->context, image->context))
         return true;
-    const struct image *pixels = image->base.pixels;
-    GLsizei width = (GLsizei)pixels->width_px, height = (GLsizei)pixels->height_px;
-    GLsizei levels = 32 - __builtin_clz((unsigned)(width > height ? width : height));
-    glCreateTextures(GL_TEXTURE_2D, 1, &image->texture);
-    glTextureStorage2D(image->texture, levels, pixels->is_float ? GL_RGBA16F : GL_SRGB8_ALPHA8,
-                       width, height);
-    glTextureSubImage2D(image->texture, 0, 0, 0, width, height, GL_RGBA,
-                        pixels->is_float ? GL_FLOAT : GL_UNSIGNED_BYTE, pixels->pixels);
-    glGenerateTextureMipmap(image->texture);
-    glTextureParameteri(image->texture, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
-    glTextureParameteri(image->texture, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-    glTextureParameteri(image->texture, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-    glTextureParameteri(image->texture, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+    image->texture = light_texture_create(image->base.pixels);
     if (!gpu_check("a light image", error)) {
         glDeleteTextures(1, &image->texture);
         return false;

@@ -26,6 +26,8 @@ struct gl_image *gl_image_create(const struct image *pixels, struct error *error
 void gl_image_destroy(struct renderer *renderer, struct renderer_image *image);
 size_t gl_image_bytes(const struct image *image);
 
+/* A texture of the pixels, with its smaller copies. Any context. */
+GLuint light_texture_create(const struct image *pixels);
 /* Puts the image on the device unless it is there. */
 bool gl_image_upload(struct gl_renderer *r, struct gl_image *image, struct error *error);
 

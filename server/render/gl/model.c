@@ -12,12 +12,30 @@ static void take_down(struct gl_model *model)
     buffer_textures_finish(&model->adjacency);
 }
 
-const struct table_programs *programs_of(struct gl_renderer *r, const struct gl_model *model,
-                                         bool ptex, struct error *error)
+void gl_model_programs(const struct gl_renderer *r, const struct gl_model *model, bool ptex,
+                       struct program_id *ids)
 {
-    const struct table_layout layout = {model->points.n, model->nodes.n, model->adjacency.n,
-                                        r->max_texels, ptex};
-    return programs_for(&r->programs, &layout, error);
+    for (int which = 0; which < TABLE_PROGRAMS; which++)
+        ids[which] = (struct program_id){
+            .set = SET_TABLES,
+            .which = which,
+            .layout = {model->points.n, model->nodes.n, model->adjacency.n, r->max_texels, ptex}};
+}
+
+struct table_programs gl_model_find_programs(const struct gl_renderer *r,
+                                             const struct gl_model *model, bool ptex)
+{
+    struct program_id ids[TABLE_PROGRAMS];
+    GLuint name[TABLE_PROGRAMS];
+    gl_model_programs(r, model, ptex, ids);
+    for (int which = 0; which < TABLE_PROGRAMS; which++)
+        name[which] = kept_programs_find(r->programs, &ids[which], NULL);
+    return (struct table_programs){ptex,
+                                   name[PROGRAM_VISIBILITY],
+                                   name[PROGRAM_EVALUATE],
+                                   name[PROGRAM_UNSOLVED],
+                                   name[PROGRAM_ROUNDED],
+                                   name[PROGRAM_ENDS]};
 }
 
 bool gl_model_upload(struct gl_renderer *r, struct gl_model *model, struct error *error)
@@ -36,8 +54,7 @@ bool gl_model_upload(struct gl_renderer *r, struct gl_model *model, struct error
     model->points = model->nodes = model->adjacency = (struct buffer_textures){0};
     if (!buffer_textures_init(&model->points, &points, MAX_POINT_TEXTURES, max, error) ||
         !buffer_textures_init(&model->nodes, &nodes, MAX_NODE_TEXTURES, node_max, error) ||
-        !buffer_textures_init(&model->adjacency, &adjacency, MAX_ADJACENCY_TEXTURES, max, error) ||
-        !programs_of(r, model, false, error)) {
+        !buffer_textures_init(&model->adjacency, &adjacency, MAX_ADJACENCY_TEXTURES, max, error)) {
         take_down(model);
         return false;
     }

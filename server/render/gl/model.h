@@ -8,7 +8,7 @@
 #include "server/render/gl/context/context.h"
 
 struct gl_renderer;
-struct table_programs;
+struct program_id;
 
 struct gl_model {
     struct renderer_model base;
@@ -31,9 +31,18 @@ void gl_model_destroy(struct renderer *renderer, struct renderer_model *model);
 
 /* Puts the tables on the device unless they are there. */
 bool gl_model_upload(struct gl_renderer *r, struct gl_model *model, struct error *error);
-/* The programs that read the tables of a model on the device, and write PLANE_PTEX if `ptex`; see
- * programs_for(). */
-const struct table_programs *programs_of(struct gl_renderer *r, const struct gl_model *model,
-                                         bool ptex, struct error *error);
+/* The programs that read the tables of a model on the device, and write PLANE_PTEX if `ptex`. Models
+ * whose tables are divided into buffer textures in the same way have the same programs; most
+ * models' tables fit into one texture each. */
+struct table_programs {
+    bool ptex;
+    GLuint visibility, evaluate, unsolved, rounded, ends;
+};
+/* Writes the ids of these programs, TABLE_PROGRAMS of them. */
+void gl_model_programs(const struct gl_renderer *r, const struct gl_model *model, bool ptex,
+                       struct program_id *ids);
+/* The programs, which the frame holds. */
+struct table_programs gl_model_find_programs(const struct gl_renderer *r,
+                                             const struct gl_model *model, bool ptex);
 
 #endif

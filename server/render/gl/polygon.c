@@ -4,15 +4,12 @@
 #include "server/render/gl/device_internal.h"
 #include "server/render/gl/visibility.h"
 #include "server/render/gl/polygon_meshes.h"
-#include "server/render/gl/programs/program.h"
 
-static bool compile(struct polygon_stage *p, struct error *error)
+/* A program that the frame holds. */
+static GLuint program_of(const struct gl_renderer *r, enum single_program which)
 {
-    if (!p->fill)
-        p->fill = program_create_single(PROGRAM_POLYGONS, error);
-    if (p->fill && !p->edges)
-        p->edges = program_create_single(PROGRAM_WIREFRAME, error);
-    return p->fill && p->edges;
+    const struct program_id id = {.set = SET_SINGLE, .which = which};
+    return kept_programs_find(r->programs, &id, NULL);
 }
 
 /* The framebuffer with these colour planes of the target, and its depths. */
@@ -89,8 +86,6 @@ bool stage_polygons_begin(struct gl_renderer *r, const struct tile *tile, struct
     static const GLuint no_face[4] = {UINT32_MAX, 0, 0, 0};
     static const GLfloat nothing[4] = {0, 0, 0, 0};
     struct polygon_stage *p = &r->polygons;
-    if (!compile(p, error))
-        return false;
     if (!p->framebuffer)
         glCreateFramebuffers(1, &p->framebuffer);
     attach_planes(r);
@@ -106,7 +101,7 @@ bool stage_polygons(struct gl_renderer *r, struct slice *slice, struct error *er
 {
     attach_planes(r);
     raster_begin(r->polygons.framebuffer, slice->tile, slice->tile);
-    draw(slice, r->polygons.fill);
+    draw(slice, program_of(r, PROGRAM_POLYGONS));
     return gpu_check("drawing polygons", error);
 }
 
@@ -116,6 +111,6 @@ bool stage_wireframe(struct gl_renderer *r, struct slice *slice, struct error *e
     attach(r, &r->target.colour, 1);
     raster_begin(p->framebuffer, slice->tile, slice->tile);
     glDepthFunc(GL_EQUAL);
-    draw(slice, p->edges);
+    draw(slice, program_of(r, PROGRAM_WIREFRAME));
     return gpu_check("drawing edges", error);
 }

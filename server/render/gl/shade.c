@@ -30,6 +30,12 @@ static struct shade_key key_of(const struct frame_request *request, const struct
                               .which = (uint8_t)which};
 }
 
+static struct program_id id_of(const struct frame_request *request, const struct light *light,
+                               enum shaded which)
+{
+    return (struct program_id){.set = SET_SHADING, .shading = key_of(request, light, which)};
+}
+
 /* The programs that each of the frame's lights needs, in the order of use. */
 static int kinds_of(const struct frame_request *request, enum shaded kinds[SHADED_KINDS])
 {
@@ -48,24 +54,51 @@ static bool planes_wanted(const struct frame_request *request)
     return request->planes & (PLANE_LIGHT | PLANE_CURVATURE | PLANE_LIGHT_CHANGE);
 }
 
-bool stage_shade_init(struct shade_stage *stage, struct error *error)
+int stage_shade_programs(const struct frame_request *request, struct program_id *ids)
+{
+    enum shaded kinds[SHADED_KINDS];
+    int n_kinds = kinds_of(request, kinds), n = 0;
+    for (uint32_t i = 0; i < request->n_lights; i++)
+        for (int k = 0; k < n_kinds; k++)
+            ids[n++] = id_of(request, &request->lights[i], kinds[k]);
+    if (planes_wanted(request)) /* of the foremost light */
+        ids[n++] = id_of(request, &request->lights[0], SHADED_PLANES);
+    return n;
+}
+
+/* The light of the i-th of stage_shade_programs(). */
+static uint32_t light_of(const struct frame_request *request, int i)
+{
+    enum shaded kinds[SHADED_KINDS];
+    uint32_t light = (uint32_t)(i / kinds_of(request, kinds));
+    return light < request->n_lights ? light : 0;
+}
+
+GLuint shade_no_groups(void)
+{
+    static const GLuint nothing[3] = {0, 1, 1};
+    GLuint buffer;
+    glCreateBuffers(1, &buffer);
+    glNamedBufferStorage(buffer, sizeof nothing, nothing, 0);
+    return buffer;
+}
+
+GLuint shade_blank_texture(void)
 {
     static const uint8_t white[4] = {255, 255, 255, 255};
-    static const GLuint nothing[3] = {0, 1, 1};
-    static const struct frame_request usual = {
-        .n_lights = 1, .lights = {{.kind = LIGHT_TUNNEL}}, .count_light = true};
-    enum shaded kinds[SHADED_KINDS];
-    for (int k = kinds_of(&usual, kinds); k-- > 0;)
-        if (!shade_programs_compile(&stage->programs, key_of(&usual, &usual.lights[0], kinds[k]),
-                                    error))
-            return false;
+    GLuint texture;
+    glCreateTextures(GL_TEXTURE_2D, 1, &texture);
+    glTextureStorage2D(texture, 1, GL_RGBA8, 1, 1);
+    glTextureSubImage2D(texture, 0, 0, 0, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, white);
+    return texture;
+}
+
+bool stage_shade_init(struct shade_stage *stage, struct error *error)
+{
     glCreateBuffers(1, &stage->light_buffer);
     glNamedBufferData(stage->light_buffer, sizeof(struct light_block), NULL, GL_STREAM_DRAW);
-    glCreateBuffers(1, &stage->no_groups);
-    glNamedBufferStorage(stage->no_groups, sizeof nothing, nothing, 0);
-    glCreateTextures(GL_TEXTURE_2D, 1, &stage->blank_texture);
-    glTextureStorage2D(stage->blank_texture, 1, GL_RGBA8, 1, 1);
-    glTextureSubImage2D(stage->blank_texture, 0, 0, 0, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, white);
+    stage->no_groups = shade_no_groups();
+    stage->blank_texture = shade_blank_texture();
     return gpu_check("the shading stage", error);
 }
 
@@ -98,17 +131,24 @@ static GLint wrapping(bool goes_on)
     return goes_on ? GL_REPEAT : GL_CLAMP_TO_EDGE;
 }
 
+void shade_bind_picture(GLuint texture, const struct frame_request *request,
+                        const struct light *light)
+{
+    glBindTextureUnit(0, texture);
+    glTextureParameteri(texture, GL_TEXTURE_WRAP_S,
+                        wrapping(light_image_repeats_s(request, light)));
+    glTextureParameteri(texture, GL_TEXTURE_WRAP_T,
+                        wrapping(light_image_repeats_t(request, light)));
+}
+
 static void bind_picture(const struct gl_renderer *r, const struct frame_request *request,
                          const struct light *light)
 {
     const struct gl_image *image = gl_image_of(light->pattern.image);
-    glBindTextureUnit(0, image ? image->texture : r->shade.blank_texture);
-    if (!image)
-        return;
-    glTextureParameteri(image->texture, GL_TEXTURE_WRAP_S,
-                        wrapping(light_image_repeats_s(request, light)));
-    glTextureParameteri(image->texture, GL_TEXTURE_WRAP_T,
-                        wrapping(light_image_repeats_t(request, light)));
+    if (image)
+        shade_bind_picture(image->texture, request, light);
+    else
+        glBindTextureUnit(0, r->shade.blank_texture);
 }
 
 /* Binds the lights behind light i of those that are drawn, and the planes that it writes. */
@@ -148,55 +188,36 @@ static void bind_planes(const struct target *target, enum shaded which)
     }
 }
 
-/* Runs a program over no pixel, with the same textures and images bound as when it runs over
- * pixels: a software device generates code at the first run, which takes most of the time of a
- * compilation. */
-static void run_over_nothing(const struct gl_renderer *r, const struct frame_request *request,
-                             const struct light *light, struct shade_program *program)
+void shade_run_over_nothing(const struct target *target, GLuint no_groups, enum shaded which,
+                            GLuint program)
 {
-    bind_picture(r, request, light);
-    bind_planes(&r->target, (enum shaded)program->key.which);
-    if (program->key.which != SHADED_PLANES) {
-        bind_lights(&r->target, 0);
-        bind_own(&r->target, 0, (enum shaded)program->key.which);
+    bind_planes(target, which);
+    if (which != SHADED_PLANES) {
+        bind_lights(target, 0);
+        bind_own(target, 0, which);
     }
-    glUseProgram(program->name);
-    glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, r->shade.no_groups);
+    glUseProgram(program);
+    glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, no_groups);
     glDispatchComputeIndirect(0);
-    program->is_made = true;
 }
 
-bool stage_shade_prepare(struct gl_renderer *r, const struct frame_request *request, bool *is_ready,
-                         struct error *error)
+void stage_shade_first_run(struct gl_renderer *r, const struct frame_request *request,
+                           bool *has_run_all)
 {
-    const struct light *missing_light = NULL;
-    struct shade_key missing = {0};
-    enum shaded kinds[SHADED_KINDS];
-    int n_kinds = kinds_of(request, kinds);
-    shade_programs_begin(&r->shade.programs);
-    /* The last program is for the planes of the foremost light. Every program is looked up before
-     * any is made, so that none evicts another of them. */
-    for (uint32_t i = 0; i < request->n_lights * (uint32_t)n_kinds + planes_wanted(request); i++) {
-        uint32_t of = i / (uint32_t)n_kinds;
-        bool is_planes = of == request->n_lights;
-        const struct light *light = &request->lights[is_planes ? 0 : of];
-        struct shade_key key =
-            key_of(request, light, is_planes ? SHADED_PLANES : kinds[i % (uint32_t)n_kinds]);
-        const struct shade_program *program = shade_programs_find(&r->shade.programs, key);
-        if (program && program->is_made)
+    struct program_id ids[MAX_FRAME_PROGRAMS];
+    int n = stage_shade_programs(request, ids);
+    *has_run_all = true;
+    for (int i = 0; *has_run_all && i < n; i++) {
+        bool has_run;
+        GLuint program = kept_programs_find(r->programs, &ids[i], &has_run);
+        if (has_run)
             continue;
-        missing_light = light;
-        missing = key;
+        bind_picture(r, request, &request->lights[light_of(request, i)]);
+        shade_run_over_nothing(&r->target, r->shade.no_groups, (enum shaded)ids[i].shading.which,
+                               program);
+        kept_programs_note_run(r->programs, &ids[i]);
+        *has_run_all = false;
     }
-    *is_ready = !missing_light;
-    if (*is_ready)
-        return true;
-    struct shade_program *program = shade_programs_find(&r->shade.programs, missing);
-    if (!program)
-        program = shade_programs_compile(&r->shade.programs, missing, error);
-    if (program)
-        run_over_nothing(r, request, missing_light, program);
-    return program;
 }
 
 /* Called after all covered pixels have their colours: runs a program that writes the listed pixels'
@@ -209,11 +230,12 @@ static void dispatch_listed(GLuint program, GLuint list)
     glDispatchComputeIndirect(0);
 }
 
-/* Returns a program that stage_shade_prepare() has made. */
+/* Returns a program that the frame holds. */
 static GLuint program_of(struct gl_renderer *r, const struct frame_request *request,
                          const struct light *light, enum shaded which)
 {
-    return shade_programs_find(&r->shade.programs, key_of(request, light, which))->name;
+    const struct program_id id = id_of(request, light, which);
+    return kept_programs_find(r->programs, &id, NULL);
 }
 
 /* Writes the planes of the foremost light, whose block is bound. */

@@ -8,7 +8,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "server/render/gl/programs/shade_programs.h"
 #include "server/render/patch_grids.h"
 
 /* Stage 1: visibility.h. */
@@ -39,16 +38,14 @@ struct edges_stage {
 
 /* Polygons instead of stages 1 and 2: polygon.h. Made at first use. */
 struct polygon_stage {
-    GLuint fill, edges; /* programs */
     GLuint framebuffer;
 };
 
 /* Stage 3: shade.h. */
 struct shade_stage {
-    struct shade_programs programs;
     GLuint light_buffer;
     GLuint blank_texture; /* used if a pattern has no image */
-    GLuint no_groups;     /* a buffer: an indirect dispatch of zero groups */
+    GLuint no_groups;     /* shade_no_groups() */
 };
 
 /* The times of stages: stage_clock.h. */

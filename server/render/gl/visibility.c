@@ -144,7 +144,7 @@ void stage_visibility(struct gl_renderer *r, const struct gl_model *model,
                       const struct table_programs *programs)
 {
     raster_begin(r->target.framebuffer, &r->drawing.place, &r->drawing.drawn);
-    clear(r, programs->layout.ptex);
+    clear(r, programs->ptex);
     GLuint program = programs->visibility;
     glUseProgram(program);
     buffer_textures_bind(&model->nodes, buffer_textures_bind(&model->points, 0));

@@ -22,7 +22,10 @@ static bool is_software(EGLDeviceEXT device)
     return has_word(eglQueryDeviceStringEXT(device, EGL_EXTENSIONS), "EGL_MESA_device_software");
 }
 
-static bool open_context(struct egl *egl)
+/* Attempts in order: robust access with notification of resets, notification alone, neither. */
+enum { ROBUSTNESS_KINDS = 3 };
+
+static EGLContext create_context(const struct egl *egl, int robustness, EGLContext share)
 {
     /* All attempts share the last three pairs, so these come at the end. */
     static const EGLint attributes[] = {EGL_CONTEXT_OPENGL_ROBUST_ACCESS,
@@ -36,15 +39,30 @@ static bool open_context(struct egl *egl)
                                         EGL_CONTEXT_OPENGL_PROFILE_MASK,
                                         EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
                                         EGL_NONE};
+    /* The API is chosen for each thread. */
     if (!eglBindAPI(EGL_OPENGL_API))
-        return false;
-    /* Attempts in order: robust access with notification of resets, notification alone, neither. */
-    for (int from = 0; from <= 4 && egl->context == EGL_NO_CONTEXT; from += 2)
-        egl->context =
-            eglCreateContext(egl->display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes + from);
-    if (egl->context == EGL_NO_CONTEXT)
-        return false;
-    return eglMakeCurrent(egl->display, EGL_NO_SURFACE, EGL_NO_SURFACE, egl->context);
+        return EGL_NO_CONTEXT;
+    return eglCreateContext(egl->display, EGL_NO_CONFIG_KHR, share, attributes + 2 * robustness);
+}
+
+bool egl_make_current(const struct egl *egl, EGLContext context)
+{
+    return eglBindAPI(EGL_OPENGL_API) &&
+           eglMakeCurrent(egl->display, EGL_NO_SURFACE, EGL_NO_SURFACE, context);
+}
+
+EGLContext egl_create_sharing(const struct egl *egl)
+{
+    return create_context(egl, egl->robustness, egl->context);
+}
+
+static bool open_context(struct egl *egl)
+{
+    for (int kind = 0; kind < ROBUSTNESS_KINDS && egl->context == EGL_NO_CONTEXT; kind++) {
+        egl->context = create_context(egl, kind, EGL_NO_CONTEXT);
+        egl->robustness = kind;
+    }
+    return egl->context != EGL_NO_CONTEXT && egl_make_current(egl, egl->context);
 }
 
 static bool open_device(struct egl *egl, EGLDeviceEXT device)

@@ -35,6 +35,11 @@ static inline bool tells_device_times(bool software)
     return !software;
 }
 
+/* llvmpipe generates a program's code for each context, but a context takes what another one has
+ * stored in Mesa's cache of shaders, in 3 to 10 ms instead of 0.4 to 2.5 s. A thread of low priority
+ * stores it: after this time, except on a machine with much load, or where there is no cache. */
+enum { SOFTWARE_STORE_NS = 50000000 };
+
 /* llvmpipe draws while it receives more commands, but starts only at a flush. So a flush follows
  * after this many cells of grids, or triangles of polygons. Measured with a car of 12.9 million
  * triangles at 1280x720: 0.8 s in steps of 65536 triangles with these flushes, 1.6 s with a flush

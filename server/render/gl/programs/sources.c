@@ -1,9 +1,12 @@
 #include "server/render/gl/programs/sources.h"
 
+#include <assert.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "server/render/gl/programs/shaders.h"
+
+static_assert(sizeof(struct shade_key) == 7, "no padding: keys are compared as bytes");
 
 static const char *file_text(const char *name)
 {
@@ -102,4 +105,32 @@ struct program_source source_of_shading(struct shade_key key)
              key.family, key.light, key.pattern, key.soft ? "true" : "false",
              key.which == SHADED_UNFILTERED ? "false" : "true");
     return source;
+}
+
+static bool is_same_layout(const struct table_layout *a, const struct table_layout *b)
+{
+    return a->n_points == b->n_points && a->n_nodes == b->n_nodes &&
+           a->n_adjacency == b->n_adjacency && a->max_texels == b->max_texels && a->ptex == b->ptex;
+}
+
+bool program_id_is_same(const struct program_id *a, const struct program_id *b)
+{
+    if (a->set != b->set)
+        return false;
+    if (a->set == SET_SHADING)
+        return memcmp(&a->shading, &b->shading, sizeof a->shading) == 0;
+    return a->which == b->which && (a->set == SET_SINGLE || is_same_layout(&a->layout, &b->layout));
+}
+
+struct program_source source_of_program(const struct program_id *id)
+{
+    switch (id->set) {
+    case SET_SINGLE:
+        return source_of_single((enum single_program)id->which);
+    case SET_TABLES:
+        return source_of_tables((enum table_program)id->which, &id->layout);
+    case SET_SHADING:
+        break;
+    }
+    return source_of_shading(id->shading);
 }

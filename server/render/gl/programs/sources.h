@@ -89,4 +89,15 @@ struct shade_key {
 
 struct program_source source_of_shading(struct shade_key key);
 
+/* Any program. */
+enum program_set { SET_SINGLE, SET_TABLES, SET_SHADING };
+struct program_id {
+    enum program_set set;
+    int which;                  /* enum single_program or enum table_program */
+    struct table_layout layout; /* of SET_TABLES */
+    struct shade_key shading;   /* of SET_SHADING */
+};
+bool program_id_is_same(const struct program_id *a, const struct program_id *b);
+struct program_source source_of_program(const struct program_id *id);
+
 #endif
