@@ -12,9 +12,10 @@ extern const struct command COMMAND_LIGHTS;
 extern const struct command COMMAND_PATTERNS;
 extern const struct command COMMAND_LEVELS;
 extern const struct command COMMAND_PICK;
+extern const struct command COMMAND_BREAKS;
 
 /* All commands, in the order in which they are listed. */
-#define N_COMMANDS 8
+#define N_COMMANDS 9
 extern const struct command *const COMMANDS[N_COMMANDS];
 
 #endif

@@ -150,7 +150,7 @@ void sheen_close(struct sheen_session *session)
     connection_finish(&session->connection);
     private_daemon_finish(&session->daemon);
     codec_decoder_destroy(session->decoder);
-    free(session->answer.data);
+    free(session->answer.data.bytes);
     free(session);
 }
 

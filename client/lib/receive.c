@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "client/lib/data.h"
 #include "client/lib/scene_convert.h"
 #include "client/lib/session.h"
 #include "client/lib/sized.h"
@@ -29,49 +30,6 @@ static enum sheen_status no_memory(struct sheen_session *session, struct sheen_e
 {
     status_set(error, SHEEN_NO_MEMORY, "no memory for a frame of %zu bytes", bytes);
     return session_fail(session, SHEEN_NO_MEMORY, error);
-}
-
-/* Grows a buffer to at least `bytes` bytes and keeps its contents. */
-static bool reserve(uint8_t **buffer, size_t *capacity, size_t bytes)
-{
-    if (bytes <= *capacity)
-        return true;
-    uint8_t *grown = realloc(*buffer, bytes);
-    if (!grown)
-        return false;
-    *buffer = grown;
-    *capacity = bytes;
-    return true;
-}
-
-/* Reads the rest of a frame's DATA. Memory grows with the bytes received, not with the announced
- * size. */
-static enum sheen_status read_data(struct sheen_session *session, struct sheen_error *error)
-{
-    struct session_answer *answer = &session->answer;
-    size_t data_bytes = (size_t)answer->body.data_bytes;
-    while (answer->n_received < data_bytes) {
-        struct message_header header;
-        enum sheen_status status =
-            session_expect(session, answer->seq, MESSAGE_DATA, NULL, &header, error);
-        if (status)
-            return status;
-        size_t left = data_bytes - answer->n_received;
-        if (header.length == 0 || header.length > left)
-            return broken(session, error, "DATA is longer or shorter than its FRAME says");
-        if ((header.length == left) != ((header.flags & MESSAGE_END) != 0))
-            return broken(session, error, "the end of DATA is not where its FRAME says");
-        size_t wanted = answer->n_received + header.length;
-        if (wanted > answer->capacity && wanted < data_bytes)
-            wanted = 2 * wanted < data_bytes ? 2 * wanted : data_bytes;
-        if (!reserve(&answer->data, &answer->capacity, wanted))
-            return no_memory(session, error, data_bytes);
-        status = session_read_raw(session, &header, answer->data + answer->n_received, error);
-        if (status)
-            return status;
-        answer->n_received += header.length;
-    }
-    return SHEEN_OK;
 }
 
 static void fill_frame(struct sheen_frame *frame, const sheen_Frame *body)
@@ -103,7 +61,7 @@ static enum sheen_status unpack_planes(struct sheen_session *session, struct she
             continue;
         size_t bytes = codec_plane_bytes(layout, plane);
         uint8_t *grown = memory->plane[plane];
-        if (!reserve(&grown, &memory->plane_capacity[plane], bytes))
+        if (!data_reserve(&grown, &memory->plane_capacity[plane], bytes))
             return no_memory(session, error, bytes);
         memory->plane[plane] = grown;
         frame->plane[plane] = grown;
@@ -156,9 +114,7 @@ static enum sheen_status open_answer(struct sheen_session *session,
         return broken(session, error, mismatch);
     answer->is_open = true;
     answer->seq = pending->seq;
-    answer->n_received = 0;
-    answer->data = memory->data;
-    answer->capacity = memory->data_capacity;
+    answer->data = (struct session_data){memory->data, memory->data_capacity, 0};
     memory->data = NULL;
     memory->data_capacity = 0;
     return SHEEN_OK;
@@ -170,10 +126,9 @@ static void close_answer(struct sheen_session *session, struct sheen_frame_memor
 {
     struct session_answer *answer = &session->answer;
     free(memory->data);
-    memory->data = answer->data;
-    memory->data_capacity = answer->capacity;
-    answer->data = NULL;
-    answer->capacity = 0;
+    memory->data = answer->data.bytes;
+    memory->data_capacity = answer->data.capacity;
+    answer->data = (struct session_data){NULL, 0, 0};
     answer->is_open = false;
 }
 
@@ -286,7 +241,7 @@ static enum sheen_status read_answer(struct sheen_session *session,
         if (status)
             return status;
     }
-    return read_data(session, error);
+    return data_read(session, answer->seq, (size_t)answer->body.data_bytes, &answer->data, error);
 }
 
 /* Receives the next answer to any request in flight, which then is in flight no more. */

@@ -6,7 +6,7 @@
 
 _Static_assert((int)SHEEN_MAX_IN_FLIGHT == (int)PROTOCOL_MAX_CREDITS, "what a daemon may grant");
 
-static enum sheen_status too_old(struct sheen_error *error, const char *what)
+enum sheen_status session_too_old(struct sheen_error *error, const char *what)
 {
     return status_set(error, SHEEN_BAD_ARGUMENT,
                       "the daemon is too old to %s: install sheen %s there", what, SHEEN_VERSION);
@@ -37,11 +37,11 @@ enum sheen_status sheen_send(struct sheen_session *session, const struct sheen_r
         return status_set(error, SHEEN_BAD_ARGUMENT, "%s", text);
     if (session->hello.minor < 2 &&
         (pending->render.has_jpeg_quality || pending->render.has_jpeg_subsampling))
-        return too_old(error, "choose the quality of JPEG files");
+        return session_too_old(error, "choose the quality of JPEG files");
     if (session->hello.minor < 4 && pending->render.aliased)
-        return too_old(error, "draw frames without antialiasing");
+        return session_too_old(error, "draw frames without antialiasing");
     if (session->hello.minor < 5 && pending->render.has_window)
-        return too_old(error, "draw a part of a picture");
+        return session_too_old(error, "draw a part of a picture");
     status = session_send(session, MESSAGE_RENDER, &pending->render, &pending->seq, error);
     session->last_sent = pending->seq;
     if (!status)
@@ -63,6 +63,6 @@ enum sheen_status sheen_cancel(struct sheen_session *session, uint32_t number,
     if (session_find_pending(session, number) == session->n_pending)
         return status_set(error, SHEEN_BAD_ARGUMENT, "no request %u is in flight", number);
     if (session->hello.minor < 1)
-        return too_old(error, "take requests back");
+        return session_too_old(error, "take requests back");
     return session_send_raw(session, MESSAGE_CANCEL, number, NULL, 0, error);
 }

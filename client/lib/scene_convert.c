@@ -185,18 +185,47 @@ static void get_extreme(struct sheen_extreme *extreme, bool has_value, const she
     message_read_vec3(&message->position, extreme->position);
 }
 
-static void get_lights(struct sheen_frame *frame, const sheen_Frame *body)
+void scene_lines_from_message(struct sheen_lines *to, const sheen_Lines *lines)
 {
-    const sheen_Lines *lines = &body->lines;
-    frame->lines = (struct sheen_lines){
+    *to = (struct sheen_lines){
         .family = (enum sheen_line_family)lines->family,
         .has_direction = lines->has_direction,
         .eye_kind = lines->has_eye             ? SHEEN_LINE_EYE_POINT
                     : lines->has_eye_direction ? SHEEN_LINE_EYE_DIRECTION
                                                : SHEEN_LINE_EYE_CAMERA,
     };
-    message_read_vec3(&lines->direction, frame->lines.direction);
-    message_read_vec3(lines->has_eye ? &lines->eye : &lines->eye_direction, frame->lines.eye);
+    message_read_vec3(&lines->direction, to->direction);
+    message_read_vec3(lines->has_eye ? &lines->eye : &lines->eye_direction, to->eye);
+}
+
+void scene_light_from_message(struct sheen_light *to, const sheen_Light *from)
+{
+    *to = (struct sheen_light){.kind = (enum sheen_light_kind)from->kind,
+                               .has_kind = true,
+                               .is_placed = true,
+                               .one_sided = from->one_sided};
+    message_read_vec3(&from->centre, to->centre);
+    message_read_vec3(&from->u, to->u);
+    message_read_vec3(&from->v, to->v);
+    from_pattern(&to->pattern, &from->pattern);
+}
+
+void scene_camera_from_message(struct sheen_camera *to, const sheen_Camera *camera)
+{
+    *to = (struct sheen_camera){
+        .projection =
+            camera->has_ortho_height ? SHEEN_PROJECTION_ORTHOGRAPHIC : SHEEN_PROJECTION_PERSPECTIVE,
+        .fov_deg = camera->fov_deg,
+        .ortho_height = camera->ortho_height,
+    };
+    message_read_vec3(&camera->eye, to->eye);
+    message_read_vec3(&camera->target, to->target);
+    message_read_vec3(&camera->up, to->up);
+}
+
+static void get_lights(struct sheen_frame *frame, const sheen_Frame *body)
+{
+    scene_lines_from_message(&frame->lines, &body->lines);
     frame->show_range = body->has_show_range ? body->show_range : 0;
     get_extreme(&frame->show_least, body->has_show_least, &body->show_least);
     get_extreme(&frame->show_greatest, body->has_show_greatest, &body->show_greatest);
@@ -205,31 +234,13 @@ static void get_lights(struct sheen_frame *frame, const sheen_Frame *body)
     message_read_colour(&body->empty, frame->empty);
     message_read_colour(&body->base, frame->base);
     frame->n_lights = body->lights_count;
-    for (uint32_t i = 0; i < frame->n_lights; i++) {
-        const sheen_Light *from = &body->lights[i];
-        struct sheen_light *to = &frame->lights[i];
-        to->kind = (enum sheen_light_kind)from->kind;
-        to->has_kind = to->is_placed = true;
-        to->one_sided = from->one_sided;
-        message_read_vec3(&from->centre, to->centre);
-        message_read_vec3(&from->u, to->u);
-        message_read_vec3(&from->v, to->v);
-        from_pattern(&to->pattern, &from->pattern);
-    }
+    for (uint32_t i = 0; i < frame->n_lights; i++)
+        scene_light_from_message(&frame->lights[i], &body->lights[i]);
 }
 
 void scene_from_message(struct sheen_frame *frame, const sheen_Frame *body)
 {
-    const sheen_Camera *camera = &body->camera;
-    frame->camera = (struct sheen_camera){
-        .projection =
-            camera->has_ortho_height ? SHEEN_PROJECTION_ORTHOGRAPHIC : SHEEN_PROJECTION_PERSPECTIVE,
-        .fov_deg = camera->fov_deg,
-        .ortho_height = camera->ortho_height,
-    };
-    message_read_vec3(&camera->eye, frame->camera.eye);
-    message_read_vec3(&camera->target, frame->camera.target);
-    message_read_vec3(&camera->up, frame->camera.up);
+    scene_camera_from_message(&frame->camera, &body->camera);
     message_read_vec3(&body->up, frame->up);
     frame->up_source = body->has_up && body->has_up_source ? (enum sheen_up_source)body->up_source
                                                            : SHEEN_UP_UNKNOWN;

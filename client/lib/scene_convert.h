@@ -14,4 +14,9 @@ void scene_to_message(sheen_Render *render, const struct sheen_request *request)
  * false colour. */
 void scene_from_message(struct sheen_frame *frame, const sheen_Frame *body);
 
+/* The same for other answers. */
+void scene_camera_from_message(struct sheen_camera *to, const sheen_Camera *camera);
+void scene_lines_from_message(struct sheen_lines *to, const sheen_Lines *lines);
+void scene_light_from_message(struct sheen_light *to, const sheen_Light *from);
+
 #endif

@@ -30,14 +30,19 @@ struct session_input {
     uint8_t body[MESSAGE_BUFFER_BYTES];
 };
 
+/* The DATA of an answer, as far as it was received. */
+struct session_data {
+    uint8_t *bytes; /* buffer of `capacity` bytes */
+    size_t capacity, n_received;
+};
+
 /* A frame whose FRAME message was read, but not yet all of its DATA. */
 struct session_answer {
     bool is_open;
     uint32_t seq; /* number of a request that is still pending */
     sheen_Frame body;
     struct codec_layout layout;
-    uint8_t *data; /* buffer of `capacity` bytes; body.data_bytes are expected */
-    size_t capacity, n_received;
+    struct session_data data; /* body.data_bytes are expected */
 };
 
 struct sheen_session {
@@ -99,6 +104,8 @@ enum sheen_status session_read_raw(struct sheen_session *session,
 enum sheen_status session_read_error(struct sheen_session *session,
                                      const struct message_header *header,
                                      struct sheen_error *error);
+/* Returns SHEEN_BAD_ARGUMENT: the daemon's version cannot do `what` ("find breaks"). */
+enum sheen_status session_too_old(struct sheen_error *error, const char *what);
 /* Returns SHEEN_BAD_PEER with a text that names the message type and what is wrong. */
 enum sheen_status session_bad_peer(struct sheen_session *session, struct sheen_error *error,
                                    uint8_t type, const char *what);

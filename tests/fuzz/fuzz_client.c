@@ -52,6 +52,19 @@ static void receive_answer(struct sheen_session *session, uint8_t type)
     session_receive(session, SEQ, type, NULL, &body, &error);
 }
 
+/* A computation, whose request has the number after SEQ. */
+static void find_breaks(struct sheen_session *session)
+{
+    const struct sheen_request request = SHEEN_REQUEST_DEFAULTS;
+    struct sheen_breaks breaks = SHEEN_BREAKS_DEFAULTS;
+    struct sheen_error error;
+    session->hello.minor = PROTOCOL_MINOR;
+    if (sheen_find_breaks(session, &request, NULL, NULL, &breaks, &error) == SHEEN_OK)
+        for (uint32_t i = 0; i < breaks.n_edges; i++)
+            MUST(breaks.edges[i].length >= 0 && breaks.edges[i].worst[0].uv[0] <= 1 + 1e-9);
+    sheen_breaks_finish(&breaks);
+}
+
 void fuzz_one(const uint8_t *bytes, size_t size)
 {
     static const uint8_t types[] = {MESSAGE_HELLO_OK, MESSAGE_UPLOAD_STATE, MESSAGE_MODEL_INFO,
@@ -62,13 +75,17 @@ void fuzz_one(const uint8_t *bytes, size_t size)
         return;
     MUST(socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) == 0);
     MUST(fcntl(ends[0], F_SETFL, O_NONBLOCK) == 0);
-    bool is_frames = bytes[0] >= sizeof types;
+    bool is_breaks = bytes[0] == sizeof types, is_frames = bytes[0] > sizeof types;
     size_t n_late = is_frames ? (size - 2) * bytes[0] / 256 : 0, n_early = size - 2 - n_late;
     MUST(write(ends[1], bytes + 2, n_early) == (ssize_t)n_early);
     session =
         (struct sheen_session){.connection = {.fd = ends[0], .timeout_ms = 1000}, .last_seq = SEQ};
     if (is_frames) {
         receive_frames(&session, bytes[1], ends[1], bytes + 2 + n_early, n_late);
+    } else if (is_breaks) {
+        MUST(shutdown(ends[1], SHUT_WR) == 0); /* the request must find a reader */
+        find_breaks(&session);
+        close(ends[1]);
     } else {
         close(ends[1]);
         receive_answer(&session, types[bytes[0]]);

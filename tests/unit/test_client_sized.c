@@ -199,6 +199,8 @@ static void defaults_are_the_same_both_ways(void **state)
     assert_true(options.size == sizeof(options) && options.timeout_ms == 300000);
     assert_int_equal(sheen_frame_defaults().size, sizeof(struct sheen_frame));
     assert_int_equal(sheen_stats_defaults().size, sizeof(struct sheen_stats));
+    assert_int_equal(sheen_breaks_defaults().size, sizeof(struct sheen_breaks));
+    assert_int_equal(sheen_break_limits_defaults().size, sizeof(struct sheen_break_limits));
     assert_int_equal(sheen_server_defaults().size, sizeof(struct sheen_server));
     assert_int_equal(sheen_model_info_defaults().size, sizeof(struct sheen_model_info));
     /* In the struct of an older program nothing beyond its size is written. */
@@ -232,6 +234,8 @@ static const struct {
     ADDED(sheen_request, size, window, 3304),
     ADDED(sheen_frame, size, threads, 3824),
     ADDED(sheen_stats, size, threads, 784),
+    ADDED(sheen_break_limits, size, curvature_percent, 32),
+    ADDED(sheen_breaks, size, server, 3240),
     /* Structs without `size` never change: each has one row. */
     ADDED(sheen_error, status, text, 644),
     ADDED(sheen_progress, report, context, 16),
@@ -246,6 +250,9 @@ static const struct {
     ADDED(sheen_window, x_px, height_px, 24),
     ADDED(sheen_times, tables_us, total_us, 56),
     ADDED(sheen_latency, frames, p99_us, 32),
+    ADDED(sheen_break_worst, value, uv, 48),
+    ADDED(sheen_break_edge, kind, worst, 352),
+    ADDED(sheen_break_vertex, face, position, 64),
 };
 
 static void members_stay_where_they_are(void **state)

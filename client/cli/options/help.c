@@ -65,7 +65,9 @@ size_t options_codes(const struct command *command,
                      struct exit_code codes[static OPTIONS_MAX_CODES])
 {
     size_t n = 0;
-    codes[n++] = (struct exit_code){0, "done"};
+    codes[n++] = (struct exit_code){0, command->no ? "within the limits" : "done"};
+    if (command->no)
+        codes[n++] = (struct exit_code){1, command->no};
     codes[n++] = (struct exit_code){2, "wrong usage"};
     if (command->codes & CODE_FILES)
         codes[n++] = (struct exit_code){3, "bad model or image, or what cannot be written"};

@@ -257,8 +257,10 @@ enum options_result options_parse(const struct command *command, int argc, char 
 {
     const struct option_row *rows[OPTIONS_MAX_ROWS];
     size_t n = options_rows(command, rows);
-    *options = (struct options){
-        .request = SHEEN_REQUEST_DEFAULTS, .reconnect_s = DEFAULT_RECONNECT_S, .orbit_deg = 1};
+    *options = (struct options){.request = SHEEN_REQUEST_DEFAULTS,
+                                .break_limits = SHEEN_BREAK_LIMITS_DEFAULTS,
+                                .reconnect_s = DEFAULT_RECONNECT_S,
+                                .orbit_deg = 1};
     enum options_result result = parse_options(argc, argv, rows, n, options, why);
     if (result != OPTIONS_RUN)
         return result;

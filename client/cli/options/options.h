@@ -61,11 +61,13 @@ struct options {
     uint32_t frames;                /* stream: 1 to 1000000 */
     /* Time to reconnect after a loss, 0 to 86400; 0: never. */
     uint32_t reconnect_s;
-    double orbit_deg; /* stream: degrees for each frame */
-    bool light_only;  /* stream: the light moves, not the camera */
-    bool has_section; /* pick: `at` is a line, else a pixel */
-    double at[4];     /* pick: px */
-    uint32_t samples; /* pick: of a section, 2 to 4096 */
+    double orbit_deg;                       /* stream: degrees for each frame */
+    bool light_only;                        /* stream: the light moves, not the camera */
+    bool has_section;                       /* pick: `at` is a line, else a pixel */
+    double at[4];                           /* pick: px */
+    uint32_t samples;                       /* pick: of a section, 2 to 4096 */
+    struct sheen_break_limits break_limits; /* breaks */
+    const char *junit;                      /* file of a JUnit report; NULL: none */
 };
 
 /* One option. `apply` gets the value (NULL for a flag) and returns false with the reason in `why`.
@@ -81,7 +83,7 @@ struct option_row {
     const char *words; /* values for completion, separated by blanks; NULL: none, or files */
 };
 
-/* Exit codes in addition to 0 and 2, which every command has. */
+/* Exit codes in addition to 0 and 2, which every command has, and to 1 (struct command). */
 enum command_codes {
     CODE_OUTPUT = 1 << 0, /* 3: standard output cannot be written */
     /* 3: also for a bad model or image, and an output file that cannot be written. */
@@ -100,6 +102,7 @@ struct command {
     bool takes_model;
     bool takes_argument; /* one more argument may follow MODEL; check() refuses a missing one */
     unsigned codes;      /* enum command_codes */
+    const char *no;      /* meaning of exit code 1; NULL: the command has none */
     /* Checks the options together; false with the reason in `why`. NULL: no check. */
     bool (*check)(struct options *options, char *why);
     int (*run)(const struct options *options); /* returns the exit code */
@@ -123,15 +126,16 @@ extern const struct option_row OPTIONS_RECONNECT[]; /* for commands that call cl
 extern const struct option_row OPTIONS_OUTPUT[];    /* json, help: for every command */
 /* For commands without a default size of their own. */
 extern const struct option_row OPTIONS_SIZE[];
-extern const struct option_row OPTIONS_SCENE[];    /* camera, light, pattern, colours */
+extern const struct option_row OPTIONS_SCENE[];    /* camera, light, pattern */
+extern const struct option_row OPTIONS_COLOURS[];  /* colours, antialias, filter */
 extern const struct option_row OPTIONS_SURFACE[];  /* surface, show, show-range */
 extern const struct option_row OPTIONS_SCHEDULE[]; /* class, deadline */
 extern const struct option_row OPTIONS_JPEG[];     /* jpeg-quality, jpeg-subsampling */
 
 /* The tables of commands that render a model's frames, after a command's own rows. */
 #define OPTIONS_OF_FRAMES                                                                          \
-    OPTIONS_JPEG, OPTIONS_SIZE, OPTIONS_SCENE, OPTIONS_SURFACE, OPTIONS_SCHEDULE, OPTIONS_MODEL,   \
-        OPTIONS_COMMON, OPTIONS_RECONNECT, OPTIONS_OUTPUT
+    OPTIONS_JPEG, OPTIONS_SIZE, OPTIONS_SCENE, OPTIONS_COLOURS, OPTIONS_SURFACE, OPTIONS_SCHEDULE, \
+        OPTIONS_MODEL, OPTIONS_COMMON, OPTIONS_RECONNECT, OPTIONS_OUTPUT
 
 /* Parses argv; argv[0] is the command's name. OPTIONS_WRONG: `why` has one line that names the
  * option. OPTIONS_HELP: call options_help(). */
@@ -156,7 +160,7 @@ struct exit_code {
     int code;
     const char *meaning;
 };
-#define OPTIONS_MAX_CODES 5
+#define OPTIONS_MAX_CODES 6
 size_t options_codes(const struct command *command,
                      struct exit_code codes[static OPTIONS_MAX_CODES]);
 

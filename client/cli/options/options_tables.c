@@ -534,6 +534,10 @@ const struct option_row OPTIONS_SCENE[] = {
      "an eye at infinity that looks in this direction. A fixed eye holds the lines\n"
      "while the camera moves (default: camera)",
      apply_line_eye, "camera"},
+    {0},
+};
+
+const struct option_row OPTIONS_COLOURS[] = {
     {"base", 0, "COLOUR",
      "colour of the shaded surface, visible through patterns with an opacity below 1;\n"
      "transparent colours of a pattern leave the picture transparent (default:\n"

@@ -103,13 +103,21 @@ static void json_light(struct json *json, const char *name, const struct sheen_l
     json_object_end(json);
 }
 
-static void json_lights(struct json *json, const struct sheen_frame *frame)
+static void json_lights(struct json *json, const struct sheen_light *lights, uint32_t n)
 {
-    json_light(json, "light", &frame->lights[0]);
+    json_light(json, "light", &lights[0]);
     json_array_begin(json, "lights");
-    for (uint32_t i = 0; i < frame->n_lights; i++)
-        json_light(json, NULL, &frame->lights[i]);
+    for (uint32_t i = 0; i < n; i++)
+        json_light(json, NULL, &lights[i]);
     json_array_end(json);
+}
+
+void scene_json_lines(struct json *json, const struct sheen_camera *camera,
+                      const struct sheen_lines *lines, const struct sheen_light *lights, uint32_t n)
+{
+    json_camera(json, camera);
+    json_family(json, lines);
+    json_lights(json, lights, n);
 }
 
 static void json_extreme(struct json *json, const char *key, const struct sheen_extreme *extreme)
@@ -176,7 +184,7 @@ void scene_json(struct json *json, const struct sheen_request *request,
     if (request->camera.zoom > 0)
         json_zoom(json, &request->camera);
     json_family(json, &frame->lines);
-    json_lights(json, frame);
+    json_lights(json, frame->lights, frame->n_lights);
     json_double(json, "light_share", frame->light_share);
     if (frame->has_colours) {
         json_colour(json, "miss", frame->miss);

@@ -13,4 +13,10 @@
 void scene_json(struct json *json, const struct sheen_request *request,
                 const struct sheen_frame *frame);
 
+/* Writes the keys camera, lines, line_eye, light (the first) and lights: what numbers about lines were computed for.
+ * n is at least 1. */
+void scene_json_lines(struct json *json, const struct sheen_camera *camera,
+                      const struct sheen_lines *lines, const struct sheen_light *lights,
+                      uint32_t n);
+
 #endif
