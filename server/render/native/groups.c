@@ -51,13 +51,14 @@ void native_find_groups(const struct native_drawing *d)
 {
     struct native_target *t = d->target;
     struct native_list *all = &t->list[NATIVE_GROUPS];
-    struct search search = {native_device_set(d->device),
-                            t,
-                            {.planes = &t->planes,
-                             .width = t->width,
-                             .height = t->height,
-                             .ndc = (float *)(void *)t->seen_depth.words,
-                             .is_perspective = d->view.ray[0] > 0}};
+    struct search search = {
+        native_device_set(d->device),
+        t,
+        {.planes = &t->planes,
+         .width = t->width,
+         .height = t->height,
+         .ndc = request_has_coverage(d->request) ? (float *)(void *)t->seen_depth.words : NULL,
+         .is_perspective = d->view.ray[0] > 0}};
     memcpy(search.seen.depth, d->view.depth, sizeof search.seen.depth);
     native_device_rows(d->device, t->height, search_rows, &search);
     all->n = 0;

@@ -24,8 +24,8 @@ struct native_planes {
 /* Groups of pixels (shaders/groups.glsl). */
 enum { GROUP_WIDTH = 4, GROUP_HEIGHT = 2 };
 
-/* What the shaders' programs need of the planes: `ndc` as in shaders/seen.glsl; `node` becomes UINT32_MAX where
- * nothing is met. */
+/* What the programs of edges need of the planes: `ndc` as in shaders/seen.glsl; `node` becomes UINT32_MAX where
+ * nothing is met. ndc NULL: no such program will run. */
 struct native_seen {
     const struct native_planes *planes; /* their pitch is the width */
     uint32_t width, height;

@@ -39,7 +39,7 @@ uint32_t LANE_NAME(native_groups)(const struct native_seen *seen, uint32_t first
                                   float *columns, uint32_t *groups)
 {
     uint32_t n = 0, width = seen->width;
-    for (uint32_t y = first; y < end; y++)
+    for (uint32_t y = first; y < end && seen->ndc; y++)
         fill_row(seen, (size_t)y * seen->planes->pitch);
     for (uint32_t y = first; y < end; y += GROUP_HEIGHT) {
         find_columns(seen, y, columns);
