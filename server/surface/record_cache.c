@@ -132,6 +132,11 @@ static const void *record_of(struct record_cache *cache, uint64_t entry)
     return place_in(cache, segment, number);
 }
 
+void record_cache_expect(const struct record_cache *cache, uint64_t key)
+{
+    __builtin_prefetch(&cache->entry[place_of(cache, key)]);
+}
+
 const void *record_cache_find(struct record_cache *cache, uint64_t key)
 {
     for (uint64_t at = place_of(cache, key);; at = (at + 1) & cache->mask) {

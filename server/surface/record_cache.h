@@ -26,6 +26,8 @@ static inline uint64_t record_cache_key(uint32_t node, uint32_t index)
     return (uint64_t)node << 7 | index;
 }
 
+/* Tells the processor that this key will be looked up soon. */
+void record_cache_expect(const struct record_cache *cache, uint64_t key);
 /* Finds a record; NULL if it is not in the cache. */
 const void *record_cache_find(struct record_cache *cache, uint64_t key);
 /* Copies a record into the cache and returns the copy, or the record that another thread has added

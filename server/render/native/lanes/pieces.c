@@ -137,6 +137,15 @@ static void rest_corners(const struct native_frame *frame, uint32_t node, int le
         corner[k][0] = 0;
 }
 
+/* The index of a chosen grid's sub-patch in its node. */
+static uint32_t patch_index_of(const struct limit_node *node, const struct patch_grid *chosen)
+{
+    int level = chosen->where & 63;
+    unsigned square = chosen->where >> 6 & 3;
+    bool is_last = node->kind == LIMIT_STRIP && !square; /* follows all levels */
+    return native_patch_index(node, level + is_last, square);
+}
+
 /* Describes a grid that patch_grids.c has chosen as a piece. Returns its sub-patch, computed in *room if it is not
  * kept; NULL if the corners of its node are enough to place it. */
 static const struct native_patch *understand(const struct native_frame *frame,
@@ -160,9 +169,8 @@ static const struct native_patch *understand(const struct native_frame *frame,
     bool is_whole = node->kind == LIMIT_REGULAR && chosen->where >> 8 == 0;
     if (piece->kind != PIECE_OF_PATCH || is_whole)
         return NULL;
-    bool is_last = node->kind == LIMIT_STRIP && !square; /* follows all levels */
-    const struct native_patch *patch = native_patch_get(
-        frame->model, chosen->node, native_patch_index(node, level + is_last, square), room);
+    const struct native_patch *patch =
+        native_patch_get(frame->model, chosen->node, patch_index_of(node, chosen), room);
     piece->patch = patch == room ? NULL : patch;
     return patch;
 }
@@ -236,6 +244,24 @@ static bool reserve(struct native_thread *thread, size_t n_chosen)
                        sizeof *thread->vertex);
 }
 
+/* So many pieces ahead the processor is told what will be read. */
+enum { AHEAD = 8 };
+
+/* Most pieces of a view were placed before, so that their patches are kept, but not in the processor's caches. */
+static void expect(const struct native_frame *frame, const struct native_thread *thread, size_t i,
+                   size_t n_chosen)
+{
+    const struct limit_node *nodes = frame->model->tables->nodes;
+    const struct patch_grid *chosen = thread->grids.chosen;
+    if (i + 2 * AHEAD < n_chosen)
+        __builtin_prefetch(&nodes[chosen[i + 2 * AHEAD].node]);
+    if (i + AHEAD < n_chosen) {
+        const struct patch_grid *next = &chosen[i + AHEAD];
+        uint32_t index = patch_index_of(&nodes[next->node], next);
+        record_cache_expect(frame->model->patches, record_cache_key(next->node, index));
+    }
+}
+
 /* Draws the chosen pieces that cover pixels' centres. False: no memory. */
 static bool draw_chosen(const struct native_frame *frame, struct native_thread *thread,
                         size_t n_chosen)
@@ -246,6 +272,7 @@ static bool draw_chosen(const struct native_frame *frame, struct native_thread *
         const struct patch_grid *chosen = &thread->grids.chosen[i];
         uint32_t grid = chosen->where >> 16;
         size_t at = thread->n_quads;
+        expect(frame, thread, i, n_chosen);
         if (chosen->node != last)
             node = place_node(frame, last = chosen->node);
         struct native_patch room;
