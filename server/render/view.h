@@ -21,7 +21,7 @@ struct view {
 
 /* The std140 block `View` of shaders/view.glsl. */
 struct view_block {
-    double eye[4];
+    _Alignas(32) double eye[4]; /* as a dvec4 in the programs of the native device */
     float axis[3][4];
     float ray[4];
     float clip[4];
