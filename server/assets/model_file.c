@@ -2,13 +2,11 @@
 
 #include <errno.h>
 #include <fcntl.h>
-#include <linux/openat2.h>
 #include <openssl/sha.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <sys/syscall.h>
 #include <unistd.h>
 
 #include "server/base/log.h"
@@ -34,16 +32,78 @@ int model_folder_open(const char *path, struct error *error)
     return fd;
 }
 
-/* Opens a file below the folder. The kernel enforces this (openat2()), even if folders change
- * meanwhile. */
-static int open_below(int folder_fd, const char *name)
+/* --- a file below the folder
+ *
+ * openat2() would find it in one call, but its arguments lie in memory, where no list of system calls
+ * can look (sandbox/confine.h): a daemon that may call it could write files. */
+
+enum { MAX_PATH_BYTES = 4096, MAX_DEPTH = 64 };
+
+/* Divides a path into names, without `.` and what `..` takes back. Returns their number; -1 with
+ * errno if it cannot be the path of a file below the folder. */
+static int split(char *path, const char *names[static MAX_DEPTH])
 {
-    const struct open_how how = {
-        /* Opening a pipe must not block the loop. */
-        .flags = O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK,
-        .resolve = RESOLVE_BENEATH | RESOLVE_NO_SYMLINKS | RESOLVE_NO_MAGICLINKS | RESOLVE_NO_XDEV,
-    };
-    return (int)syscall(SYS_openat2, folder_fd, name, &how, sizeof how);
+    int n = 0;
+    char *rest = path;
+    errno = EXDEV;
+    if (*path == '/' || *path == 0 || path[strlen(path) - 1] == '/')
+        return -1;
+    for (const char *name; (name = strsep(&rest, "/"));) {
+        if (!*name || strcmp(name, ".") == 0)
+            continue;
+        bool is_back = strcmp(name, "..") == 0;
+        if (is_back ? n == 0 : n == MAX_DEPTH)
+            return -1;
+        if (is_back)
+            n--;
+        else
+            names[n++] = name;
+    }
+    return n;
+}
+
+static bool on_one_mount(int a_fd, int b_fd)
+{
+    struct statx a, b;
+    if (statx(a_fd, "", AT_EMPTY_PATH, STATX_MNT_ID, &a) < 0 ||
+        statx(b_fd, "", AT_EMPTY_PATH, STATX_MNT_ID, &b) < 0)
+        return false;
+    errno = EXDEV;
+    return a.stx_mnt_id == b.stx_mnt_id && a.stx_dev_major == b.stx_dev_major &&
+           a.stx_dev_minor == b.stx_dev_minor;
+}
+
+/* Opens one name in a folder: no link, no other file system. */
+static int open_name(int folder_fd, const char *name, int flags)
+{
+    /* Opening a pipe must not block the loop. */
+    int fd = openat(folder_fd, name, flags | O_NOFOLLOW | O_CLOEXEC | O_NOCTTY | O_NONBLOCK);
+    if (fd < 0 || on_one_mount(folder_fd, fd))
+        return fd;
+    close(fd);
+    return -1;
+}
+
+/* Opens a file below the folder, name by name, so that it lies there even if folders change
+ * meanwhile. -1 with errno. */
+static int open_below(int folder_fd, const char *path)
+{
+    char copy[MAX_PATH_BYTES];
+    const char *names[MAX_DEPTH];
+    errno = ENAMETOOLONG;
+    if ((size_t)snprintf(copy, sizeof copy, "%s", path) >= sizeof copy)
+        return -1;
+    const int n = split(copy, names);
+    int fd = n > 0 ? folder_fd : -1;
+    for (int i = 0; fd >= 0 && i < n; i++) {
+        const int before = fd;
+        fd = open_name(before, names[i], i + 1 < n ? O_PATH | O_DIRECTORY : O_RDONLY);
+        const int failure = errno;
+        if (before != folder_fd)
+            close(before);
+        errno = failure;
+    }
+    return fd;
 }
 
 /* Opens the file. Returns NULL, or what is wrong with it. */

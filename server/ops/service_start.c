@@ -141,10 +141,7 @@ static void connect_rooms(struct service *service)
 /* From here on the daemon can start no program, write no file and open no socket. */
 static bool confine(const struct service *service, struct error *error)
 {
-    const struct confine_needs needs = {.kind = service->has_driver ? CONFINE_DRIVER
-                                                                    : CONFINE_COMPUTING,
-                                        .finds_files = *service->options.models};
-    return confine_enter(&needs) ||
+    return confine_enter(service->has_driver ? CONFINE_DRIVER : CONFINE_COMPUTING) ||
            error_set(error, ERROR_SERVER, "the kernel refuses to confine the daemon (seccomp): %s",
                      strerror(errno));
 }

@@ -196,17 +196,15 @@ static void decide_by_arguments(struct filter *filter, enum confine_kind kind)
     }
 }
 
-bool confine_enter(const struct confine_needs *needs)
+bool confine_enter(enum confine_kind kind)
 {
     struct filter filter;
     filter_init(&filter);
-    decide_by_arguments(&filter, needs->kind);
+    decide_by_arguments(&filter, kind);
     ALLOW_ALL(&filter, FREE_CALLS);
     /* Its arguments lie in memory, where no filter can look: libraries then call clone(). */
     filter_call(&filter, SYS_clone3, SECCOMP_RET_ERRNO | ENOSYS);
-    if (needs->finds_files)
-        filter_call(&filter, SYS_openat2, SECCOMP_RET_ALLOW);
-    if (needs->kind == CONFINE_DRIVER)
+    if (kind == CONFINE_DRIVER)
         ALLOW_ALL(&filter, DRIVER_CALLS);
     if (IS_SANITIZED)
         ALLOW_ALL(&filter, SANITIZER_CALLS);

@@ -14,17 +14,9 @@ enum confine_kind {
     CONFINE_DRIVER,
 };
 
-/* What a daemon may do beyond serving its clients. */
-struct confine_needs {
-    enum confine_kind kind;
-    /* Finds files below a folder by openat2(), whose arguments lie in memory, where no list can look: so
-     * it could also write files, as far as its user may. */
-    bool finds_files;
-};
-
 /* Confines all threads of the process for ever, and those that they start. From now on a forbidden
  * call fails with EPERM and leaves a line in the kernel's log. False with errno if the kernel
  * refuses. */
-bool confine_enter(const struct confine_needs *needs);
+bool confine_enter(enum confine_kind kind);
 
 #endif

@@ -57,6 +57,7 @@ static const struct call CALLS[] = {
     {"symlinkat", SYS_symlinkat, {NOWHERE, -1, NOWHERE}, EPERM, false},
     {"mknodat", SYS_mknodat, {-1, NOWHERE, 0, 0}, EPERM, false},
     {"truncate", SYS_truncate, {NOWHERE, 0}, EPERM, false},
+    {"a file by openat2", SYS_openat2, {AT_FDCWD, NOWHERE, NOWHERE, 0}, EPERM, false},
     {"a file to write", SYS_openat, {AT_FDCWD, NOWHERE, O_WRONLY}, EPERM, true},
     {"a file to make", SYS_openat, {AT_FDCWD, NOWHERE, O_RDONLY | O_CREAT}, EPERM, true},
     {"a folder to make", SYS_mkdirat, {AT_FDCWD, NOWHERE, 0}, EPERM, true},

@@ -365,11 +365,12 @@ class TakenOver(unittest.TestCase):
         return int(said.split("refused: ")[1].split()[0])
 
     def test_on_processors(self):
-        self.assertEqual(self.refused("taken.over"), 37)
+        self.assertEqual(self.refused("taken.over"), 38)
+        self.assertEqual(self.refused("taken.over", "--models", MODELS), 38)
 
     @unittest.skipIf(MESA is None, "no GL device")
     def test_by_a_driver(self):
-        self.assertEqual(self.refused("taken.over.gl", "--device", MESA), 31)
+        self.assertEqual(self.refused("taken.over.gl", "--device", MESA), 32)
 
 
 @unittest.skipIf(MESA is None, "no GL device")
