@@ -110,7 +110,7 @@ IMAGE_LIBRARY_SRC := $(wildcard server/image/*.cpp)
 # Code that sheend shares with its worker programs, and code of the worker programs only; each has a main and tasks.
 WORKER_SHARED_SRC := server/sandbox/stream.c server/sandbox/job.c server/sandbox/pass.c server/sandbox/filter.c \
                      server/sandbox/cage_code.c server/sandbox/image_code.c
-ZYGOTE_SRC := server/sandbox/zygote.c server/sandbox/sandbox.c server/sandbox/threads.c
+ZYGOTE_SRC := server/sandbox/zygote.c server/sandbox/sandbox.c server/sandbox/threads.c server/sandbox/landlock.c
 # The folders of the daemon only.
 SERVICE_SRC := $(foreach room,net session frame assets output threads ops,$(wildcard server/$(room)/*.c))
 CLIENT_LIB_SRC := $(wildcard client/lib/*.c client/lib/*/*.c)

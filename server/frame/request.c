@@ -281,13 +281,11 @@ static void enter_queue(struct request *request)
         request_reply_superseded(replaced->owner, request->seq);
 }
 
-/* True if the frame needs the worker program for images: for its file or for its legend. */
+/* True if the frame's file is written by the worker program for images. */
 static bool takes_images(const sheen_Render *render)
 {
     return render->encoding == sheen_Encoding_ENCODING_EXR ||
-           render->encoding == sheen_Encoding_ENCODING_TIFF ||
-           (render->show.kind != sheen_ShowKind_SHOW_LINES &&
-            false_colour_has_legend(&render->show));
+           render->encoding == sheen_Encoding_ENCODING_TIFF;
 }
 
 void request_render(struct request_client *client, struct reply *reply, uint32_t seq,

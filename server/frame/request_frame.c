@@ -200,9 +200,8 @@ static void paint_run(struct task *task, void *context)
     double size = 0;
     for (int i = 0; i < 3; i++)
         size = hypot(size, tables->box_max[i] - tables->box_min[i]);
-    false_colour_paint(frame, request->host->workers, &request->render.show, size,
-                       request->frame_request.miss, request->frame_request.empty,
-                       &request->extremes);
+    false_colour_paint(frame, &request->render.show, size, request->frame_request.miss,
+                       request->frame_request.empty, &request->extremes);
     for (unsigned plane = 0; plane < PLANE_COUNT; plane++)
         if (!(request->layout.planes & 1u << plane)) {
             block_cache_give(frame->block_cache, frame->plane[plane]);

@@ -491,33 +491,6 @@ bool encode(enum image_format kind, uint32_t width, uint32_t height,
     return true;
 }
 
-// --- text
-
-constexpr const char *FONT = "DejaVuSans";
-
-bool draw_text(struct text *text, const char *line, int size, struct error *error)
-{
-    OIIO::ROI box = OIIO::ImageBufAlgo::text_size(line, size, FONT);
-    if (!box.defined()) {
-        OIIO::geterror(); // removes the error, which would otherwise appear with the next one
-        return error_set(error, ERROR_SERVER,
-                         "the font DejaVu Sans is missing (Debian: fonts-dejavu-core)");
-    }
-    const int width = box.width(), height = box.height();
-    OIIO::ImageBuf mask(OIIO::ImageSpec(width, height, 1, OIIO::TypeDesc::FLOAT),
-                        OIIO::InitializePixels::Yes);
-    const size_t n = static_cast<size_t>(width) * static_cast<size_t>(height);
-    std::unique_ptr<float, void (*)(void *)> coverage(
-        static_cast<float *>(std::malloc(n * sizeof(float))), std::free);
-    if (!coverage ||
-        !OIIO::ImageBufAlgo::render_text(mask, -box.xbegin, -box.ybegin, line, size, FONT, 1.0f) ||
-        !mask.get_pixels(mask.roi(), OIIO::TypeDesc::FLOAT, coverage.get()))
-        return error_set(error, ERROR_SERVER, "a line of text cannot be drawn");
-    *text = {box.xbegin, box.ybegin, static_cast<uint32_t>(width), static_cast<uint32_t>(height),
-             coverage.release()};
-    return true;
-}
-
 // Runs work() and turns exceptions into errors.
 template <typename Work> bool guarded(const char *what, struct error *error, Work work)
 {
@@ -558,10 +531,4 @@ extern "C" bool image_encode(enum image_format format, uint32_t width_px, uint32
         return encode(format, width_px, height_px, channels, n_channels, attributes, n_attributes,
                       bytes, size, error);
     });
-}
-
-extern "C" bool text_create(struct text *text, const char *line, int size_px, struct error *error)
-{
-    *text = {};
-    return guarded("text", error, [&] { return draw_text(text, line, size_px, error); });
 }

@@ -76,31 +76,4 @@ bool image_encode(enum image_format format, uint32_t width_px, uint32_t height_p
                   const struct image_attribute *attributes, size_t n_attributes, uint8_t **bytes,
                   size_t *size, struct error *error);
 
-/* A line of text as a mask. Its baseline begins at (0, 0); y points down. Owned by the caller; free
- * it by text_finish(). */
-struct text {
-    int left_px, top_px; /* position of the mask's first pixel */
-    uint32_t width_px, height_px;
-    float *coverage; /* [height_px][width_px], 0 to 1 */
-};
-/* The most lines of one picture. */
-enum { TEXT_MAX_LINES = 8 };
-/* Limit of a mask's sides and of its distance from the start of the baseline. */
-#define TEXT_MAX_PX (1u << 15)
-
-/* Renders one line of ASCII (OpenImageIO 2.4 misreads other characters) in DejaVu Sans of size_px.
- * False with ERROR_SERVER if the font is missing or memory is short; *text is then empty. */
-bool text_create(struct text *text, const char *line, int size_px, struct error *error);
-void text_finish(struct text *text);
-/* True if sides and distances are within TEXT_MAX_PX and every coverage is from 0 to 1. */
-bool text_check(const struct text *text);
-
-enum text_align { TEXT_LEFT, TEXT_CENTRE, TEXT_RIGHT };
-
-/* Draws text over 8-bit RGBA pixels (straight alpha, contiguous rows, top row first). Its baseline
- * begins, has its middle or ends at (x_px, y_px), by `align`. Parts outside of the picture are left
- * out. */
-void text_draw(const struct text *text, uint8_t *rgba, uint32_t width_px, uint32_t height_px,
-               int x_px, int y_px, enum text_align align, const float colour[4]);
-
 #endif

@@ -1,14 +1,12 @@
 #include "server/output/false_colour.h"
 
 #include <math.h>
-#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "server/image/blend.h"
 #include "server/output/legend.h"
-#include "server/base/log.h"
 
 #define NO_FACE 0xffffffffu
 #define DEFAULT_DRAFT_DEG 3
@@ -400,8 +398,7 @@ static void add_marks(const struct painting *painting, struct legend *legend)
     }
 }
 
-static void add_legend(const struct painting *painting, const struct frame *frame,
-                       struct workers *workers)
+static void add_legend(const struct painting *painting, const struct frame *frame)
 {
     static const char *const titles[] = {
         [sheen_ShowKind_SHOW_CURVATURE] = "principal curvature, 1/unit",
@@ -411,15 +408,10 @@ static void add_legend(const struct painting *painting, const struct frame *fram
         [sheen_ShowKind_SHOW_PTEX] = "Ptex face: u to the right, v up",
         [sheen_ShowKind_SHOW_DRAFT] = "draft angle, degrees",
     };
-    static atomic_flag told = ATOMIC_FLAG_INIT;
     struct legend legend = {
         .title = titles[painting->kind], .colour = bar_colour, .context = painting};
     add_marks(painting, &legend);
-    struct error error = {0};
-    if (!legend_draw(frame->plane[0], frame->width_px, frame->height_px, &legend, workers,
-                     frame->block_cache, &error) &&
-        !atomic_flag_test_and_set(&told))
-        log_event(LOG_WARN, "legends lack their numbers", log_text("text", error.text));
+    legend_draw(frame->plane[0], frame->width_px, frame->height_px, &legend);
 }
 
 bool false_colour_has_legend(const sheen_Show *show)
@@ -427,8 +419,8 @@ bool false_colour_has_legend(const sheen_Show *show)
     return !show->has_legend || show->legend;
 }
 
-void false_colour_paint(const struct frame *frame, struct workers *workers, sheen_Show *show,
-                        double size, const float miss[4], const float empty[4],
+void false_colour_paint(const struct frame *frame, sheen_Show *show, double size,
+                        const float miss[4], const float empty[4],
                         struct false_colour_extremes *extremes)
 {
     struct found found = {0};
@@ -456,5 +448,5 @@ void false_colour_paint(const struct frame *frame, struct workers *workers, shee
     paint_pixels(&painting, frame->plane[0], miss, empty, &found);
     fill_extremes(&painting, &found, size, extremes);
     if (false_colour_has_legend(show))
-        add_legend(&painting, frame, workers);
+        add_legend(&painting, frame);
 }

@@ -9,16 +9,13 @@
  *                             to 0
  *
  * A pixel shows the value at its centre, as the planes do. Where the frame has the coverage plane,
- * pixels that the surface covers only partly (at outlines) are blended with `empty`. A worker
- * process renders the legend's text; if it fails, the legend has no text and the log reports it
- * once.
+ * pixels that the surface covers only partly (at outlines) are blended with `empty`.
  * Any thread. */
 #ifndef SHEEN_OUTPUT_FALSE_COLOUR_H
 #define SHEEN_OUTPUT_FALSE_COLOUR_H
 
 #include "protocol/message.h"
 #include "server/scene/frame.h"
-#include "server/threads/workers.h"
 
 /* The least and the greatest value among the pixels whose centre has a value. */
 struct false_colour_extremes {
@@ -42,8 +39,8 @@ bool false_colour_has_legend(const sheen_Show *show);
  * not exceed, rounded up to two digits, but at least the curvature of a surface whose normal turns
  * by 1e-5 rad over `size`: otherwise the picture of a flat model would show rounding errors in full
  * colours. */
-void false_colour_paint(const struct frame *frame, struct workers *workers, sheen_Show *show,
-                        double size, const float miss[4], const float empty[4],
+void false_colour_paint(const struct frame *frame, sheen_Show *show, double size,
+                        const float miss[4], const float empty[4],
                         struct false_colour_extremes *extremes);
 
 #endif

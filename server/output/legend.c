@@ -1,10 +1,10 @@
 #include "server/output/legend.h"
 
-#include <assert.h>
 #include <math.h>
 #include <string.h>
 
 #include "server/image/blend.h"
+#include "server/output/text.h"
 
 /* Lengths in units of the font's size, which is 1/45 of the picture's height. */
 #define FONT_SHARE 45
@@ -61,41 +61,29 @@ static void draw_bar(uint8_t *rgba, uint32_t width_px, const struct box *box,
         }
 }
 
-/* Writes the title and the marks. One worker draws all of them, since starting one takes far longer
- * than a line of text. */
-static bool write_texts(uint8_t *rgba, uint32_t width_px, uint32_t height_px, const struct box *bar,
-                        int panel_y, int font, const struct legend *legend, struct workers *workers,
-                        struct block_cache *block_cache, struct error *error)
+static void write_texts(uint8_t *rgba, uint32_t width_px, uint32_t height_px, const struct box *bar,
+                        int panel_y, int font, const struct legend *legend)
 {
-    static_assert(1 + LEGEND_MAX_MARKS <= TEXT_MAX_LINES, "lines of a legend");
-    const char *lines[TEXT_MAX_LINES] = {legend->title};
-    struct text texts[TEXT_MAX_LINES];
-    for (unsigned i = 0; i < legend->n_marks; i++)
-        lines[1 + i] = legend->marks[i].text;
-    if (!workers_draw_texts(workers, block_cache, lines, 1 + legend->n_marks, font, texts, error))
-        return false;
-    text_draw(&texts[0], rgba, width_px, height_px, bar->x, panel_y + (int)(TITLE_BASELINE * font),
-              TEXT_LEFT, TEXT_COLOUR);
+    text_draw(legend->title, font, rgba, width_px, height_px, bar->x,
+              panel_y + (int)(TITLE_BASELINE * font), TEXT_LEFT, TEXT_COLOUR);
     for (unsigned i = 0; i < legend->n_marks; i++) {
         const struct legend_mark *mark = &legend->marks[i];
         enum text_align align = mark->at <= 0   ? TEXT_LEFT
                                 : mark->at >= 1 ? TEXT_RIGHT
                                                 : TEXT_CENTRE;
-        text_draw(&texts[1 + i], rgba, width_px, height_px, bar->x + (int)(mark->at * bar->width),
-                  panel_y + (int)(MARKS_BASELINE * font), align, TEXT_COLOUR);
+        text_draw(mark->text, font, rgba, width_px, height_px,
+                  bar->x + (int)(mark->at * bar->width), panel_y + (int)(MARKS_BASELINE * font),
+                  align, TEXT_COLOUR);
     }
-    block_cache_give(block_cache, texts[0].coverage);
-    return true;
 }
 
-bool legend_draw(uint8_t *rgba, uint32_t width_px, uint32_t height_px, const struct legend *legend,
-                 struct workers *workers, struct block_cache *block_cache, struct error *error)
+void legend_draw(uint8_t *rgba, uint32_t width_px, uint32_t height_px, const struct legend *legend)
 {
     int font = (int)(height_px / FONT_SHARE);
     font = font < MIN_FONT_PX ? MIN_FONT_PX : font;
     struct box panel = {.width = PANEL_WIDTH * font, .height = (int)(PANEL_HEIGHT * font)};
     if (height_px < LEGEND_MIN_HEIGHT_PX || width_px < (uint32_t)panel.width)
-        return true;
+        return;
     panel.x = (int)width_px - panel.width;
     panel.y = (int)height_px - panel.height;
     int margin = (int)(MARGIN * font);
@@ -103,6 +91,5 @@ bool legend_draw(uint8_t *rgba, uint32_t width_px, uint32_t height_px, const str
                             panel.width - 2 * margin, (int)(BAR_HEIGHT * font)};
     darken(rgba, width_px, &panel);
     draw_bar(rgba, width_px, &bar, legend);
-    return write_texts(rgba, width_px, height_px, &bar, panel.y, font, legend, workers, block_cache,
-                       error);
+    write_texts(rgba, width_px, height_px, &bar, panel.y, font, legend);
 }

@@ -4,10 +4,7 @@
 #ifndef SHEEN_OUTPUT_LEGEND_H
 #define SHEEN_OUTPUT_LEGEND_H
 
-#include <stdbool.h>
 #include <stdint.h>
-
-#include "server/threads/workers.h"
 
 /* A picture that is lower than this, or too narrow for the panel, gets no legend. */
 #define LEGEND_MIN_HEIGHT_PX 120
@@ -27,11 +24,7 @@ struct legend {
     struct legend_mark marks[LEGEND_MAX_MARKS];
 };
 
-/* Draws the legend over a colour plane (8-bit sRGB RGBA, rows contiguous, top first). A worker
- * process renders the text into masks, whose memory comes from `block_cache` (NULL: from malloc()).
- * Returns false and sets *error if a text could not be drawn; the panel and the bar are drawn
- * anyway. */
-bool legend_draw(uint8_t *rgba, uint32_t width_px, uint32_t height_px, const struct legend *legend,
-                 struct workers *workers, struct block_cache *block_cache, struct error *error);
+/* Draws the legend over a colour plane (8-bit sRGB RGBA, rows contiguous, top first). */
+void legend_draw(uint8_t *rgba, uint32_t width_px, uint32_t height_px, const struct legend *legend);
 
 #endif

@@ -21,4 +21,4 @@ static void read_cage(struct source *input, struct sink *answer)
     cage_finish(&cage);
 }
 
-const struct zygote_task cage_tasks[N_JOB_KINDS] = {[JOB_READ_CAGE] = {read_cage, false}};
+const struct zygote_task cage_tasks[N_JOB_KINDS] = {[JOB_READ_CAGE] = {read_cage}};

@@ -136,34 +136,3 @@ bool picture_take(struct source *source, struct picture *picture)
             return false;
     return source->left == 0;
 }
-
-/* --- texts */
-
-void text_write(struct sink *sink, const struct text *text)
-{
-    sink_u32(sink, (uint32_t)text->left_px);
-    sink_u32(sink, (uint32_t)text->top_px);
-    sink_u32(sink, text->width_px);
-    sink_u32(sink, text->height_px);
-    sink_bytes(sink, text->coverage,
-               (size_t)text->width_px * text->height_px * sizeof *text->coverage);
-}
-
-bool text_take(struct source *source, float *coverage, struct text *text)
-{
-    struct text taken = {.coverage = coverage};
-    taken.left_px = (int)source_u32(source);
-    taken.top_px = (int)source_u32(source);
-    taken.width_px = source_u32(source);
-    taken.height_px = source_u32(source);
-    *text = (struct text){0};
-    if (!source->ok || taken.width_px > TEXT_MAX_PX || taken.height_px > TEXT_MAX_PX ||
-        source->left / sizeof *coverage < (size_t)taken.width_px * taken.height_px)
-        return false;
-    const size_t size = (size_t)taken.width_px * taken.height_px * sizeof *coverage;
-    memcpy(coverage, source_bytes(source, size), size);
-    if (!text_check(&taken))
-        return false;
-    *text = taken;
-    return true;
-}

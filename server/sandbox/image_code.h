@@ -36,10 +36,4 @@ void picture_write(struct sink *sink, const struct picture *picture,
  * not read its channels. */
 bool picture_take(struct source *source, struct picture *picture);
 
-/* A text's mask. text_take() checks it by text_check() and copies it to `coverage`, the caller's
- * memory, which must have room for all bytes left in the source; text->coverage points there. What
- * follows the mask stays in the source. On failure *text is empty. */
-void text_write(struct sink *sink, const struct text *text);
-bool text_take(struct source *source, float *coverage, struct text *text);
-
 #endif

@@ -43,29 +43,7 @@ static void write_image(struct source *input, struct sink *answer)
     free(file);
 }
 
-static void draw_text(struct source *input, struct sink *answer)
-{
-    const int size_px = (int)source_u32(input);
-    const uint32_t n = source_u32(input);
-    struct error error = {0};
-    struct text texts[TEXT_MAX_LINES] = {0};
-    bool ok = n <= TEXT_MAX_LINES || error_set(&error, ERROR_SERVER, "too many lines of text");
-    for (uint32_t i = 0; ok && i < n; i++)
-        ok = text_create(&texts[i], source_text(input), size_px, &error);
-    if (!ok)
-        answer_write_error(answer, &error);
-    else
-        answer_write_ok(answer);
-    for (uint32_t i = 0; i < n && i < TEXT_MAX_LINES; i++) {
-        if (ok)
-            text_write(answer, &texts[i]);
-        text_finish(&texts[i]);
-    }
-}
-
 const struct zygote_task image_tasks[N_JOB_KINDS] = {
-    [JOB_READ_IMAGE] = {read_image, false},
-    [JOB_WRITE_IMAGE] = {write_image, false},
-    /* opens files, because OpenImageIO searches for the font each time */
-    [JOB_DRAW_TEXT] = {draw_text, true},
+    [JOB_READ_IMAGE] = {read_image},
+    [JOB_WRITE_IMAGE] = {write_image},
 };

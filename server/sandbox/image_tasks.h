@@ -7,8 +7,7 @@
 /* The input of each job:
  *
  * JOB_READ_IMAGE   the largest side allowed (px), then a file
- * JOB_WRITE_IMAGE  a picture
- * JOB_DRAW_TEXT    the size in pixels and the number of lines, then the lines of text */
+ * JOB_WRITE_IMAGE  a picture */
 extern const struct zygote_task image_tasks[N_JOB_KINDS];
 
 #endif

@@ -18,7 +18,6 @@ enum job_kind {
     JOB_READ_CAGE,   /* a file to a cage */
     JOB_READ_IMAGE,  /* a file to pixels */
     JOB_WRITE_IMAGE, /* planes to a file */
-    JOB_DRAW_TEXT,   /* lines of the daemon's own text to masks */
     N_JOB_KINDS,
 };
 

@@ -14,6 +14,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "server/sandbox/landlock.h"
 #include "server/sandbox/pass.h"
 #include "server/sandbox/sandbox.h"
 #include "server/sandbox/threads.h"
@@ -80,13 +81,11 @@ static void run_child(const struct zygote *zygote, const struct job *job,
     void *bytes = mmap(NULL, job->input_bytes, PROT_READ, MAP_SHARED, fds[JOB_INPUT], 0);
     if (bytes == MAP_FAILED || !keep_answer(fds[JOB_ANSWER]))
         fail_child(zygote, "cannot take a job over", ZYGOTE_EXIT_NO_INPUT);
-    const struct zygote_task *task = &zygote->tasks[job->kind];
-    if (!task->opens_files)
-        enter_sandbox(zygote, job);
+    enter_sandbox(zygote, job);
     struct source input = {bytes, job->input_bytes, true};
     struct sink answer;
     sink_init(&answer, ANSWER_FD);
-    task->run(&input, &answer);
+    zygote->tasks[job->kind].run(&input, &answer);
     _exit(sink_flush(&answer) ? 0 : ZYGOTE_EXIT_NO_ANSWER);
 }
 
@@ -222,8 +221,10 @@ int zygote_main(int argc, char **argv, const struct zygote_task tasks[static N_J
     sigprocmask(SIG_BLOCK, &set, NULL);
     signal(SIGPIPE, SIG_IGN); /* the daemon may have closed the pipe for a job's end */
     zygote.signal_fd = signalfd(-1, &set, SFD_CLOEXEC | SFD_NONBLOCK);
-    bool ok = zygote.signal_fd >= 0 && threads_wait_idle() &&
-              sandbox_held_bytes(&zygote.held_bytes) && serve(&zygote);
+    bool ok =
+        zygote.signal_fd >= 0 && threads_wait_idle() && sandbox_held_bytes(&zygote.held_bytes);
+    landlock_enter(); /* the program has read what it needs; where there is no Landlock, go on */
+    ok = ok && serve(&zygote);
     if (!ok)
         fprintf(stderr, "%s: cannot go on: %s\n", name, strerror(errno));
     fflush(stderr);

@@ -19,9 +19,6 @@
  * (job.h). */
 struct zygote_task {
     void (*run)(struct source *input, struct sink *answer);
-    /* Runs without a sandbox, because it needs the file system; only for input that the daemon
-     * itself made. */
-    bool opens_files;
 };
 
 /* The descriptor of the socket to the daemon. */

@@ -1,5 +1,5 @@
 /* The work that sheend does in worker programs with sandboxed processes: reading cages and images,
- * writing images, drawing text. So tinygltf and OpenImageIO are not in the daemon itself.
+ * writing images. So tinygltf and OpenImageIO are not in the daemon itself.
  *
  * All results are checked as if a stranger had sent them.
  * Thread: any. Each call blocks until it is done. */
@@ -46,7 +46,7 @@ bool workers_init(struct workers *workers, const char *folder, const struct work
 /* Sets new limits of time, for jobs that begin from now on. */
 void workers_set_times(struct workers *workers, const struct workers_limits *limits);
 void workers_finish(struct workers *workers);
-/* Starts the program for images and texts, because such a job will come. Loading its libraries
+/* Starts the program for images, because such a job will come. Loading its libraries
  * keeps a processor busy for 0.2 s, so a daemon that is about to draw its first frame does not
  * start it earlier. */
 void workers_expect_images(struct workers *workers);
@@ -67,10 +67,4 @@ bool workers_write_image(struct workers *workers, const struct picture *picture,
                          const struct picture_block *blocks, size_t n_blocks,
                          struct block_cache *block_cache, uint8_t **bytes, size_t *size,
                          struct error *error);
-/* text_create() of 1 to TEXT_MAX_LINES lines in one worker. The masks lie in one block from
- * `block_cache`, which begins with texts[0].coverage and which the caller gives back. */
-bool workers_draw_texts(struct workers *workers, struct block_cache *block_cache,
-                        const char *const *lines, size_t n, int size_px, struct text *texts,
-                        struct error *error);
-
 #endif

@@ -65,24 +65,9 @@ static void try_picture(struct source *source)
     }
 }
 
-static void try_text(struct source *source)
-{
-    static const float white[4] = {1, 1, 1, 1};
-    static uint8_t rgba[16][16][4];
-    struct text text;
-    const size_t had = source->left;
-    float *coverage = malloc(had > 0 ? had : 1);
-    if (coverage && text_take(source, coverage, &text)) {
-        MUST(had - source->left == FOUR_NUMBERS + sizeof(float) * text.width_px * text.height_px);
-        if (text.width_px * text.height_px < 4096)
-            text_draw(&text, rgba[0][0], 16, 16, 8, 8, TEXT_CENTRE, white);
-    }
-    free(coverage);
-}
-
 void fuzz_one(const uint8_t *bytes, size_t size)
 {
-    static void (*const takers[])(struct source *) = {try_cage, try_image, try_picture, try_text};
+    static void (*const takers[])(struct source *) = {try_cage, try_image, try_picture};
     const size_t n = sizeof takers / sizeof *takers;
     if (size < 1)
         return;

@@ -360,68 +360,6 @@ static void test_planes_a_format_cannot_hold(void **state)
     free(p);
 }
 
-/* The bounding box of the pixels that text has changed; false if there are none. */
-static bool touched(uint8_t (*rgba)[4], int box[4])
-{
-    bool any = false;
-    for (int y = 0; y < HEIGHT; y++)
-        for (int x = 0; x < WIDTH; x++)
-            if (rgba[y * WIDTH + x][3]) {
-                box[0] = any && box[0] < x ? box[0] : x;
-                box[1] = any && box[1] > x ? box[1] : x;
-                box[2] = any ? box[2] : y;
-                box[3] = y;
-                any = true;
-            }
-    return any;
-}
-
-static void test_text(void **state)
-{
-    (void)state;
-    static const float orange[4] = {1, 0.5f, 0, 1};
-    static uint8_t rgba[HEIGHT * WIDTH][4];
-    int box[4];
-    struct error error = {0};
-    struct text text;
-    if (!text_create(&text, "H0", 20, &error))
-        fail_msg("%s", error.text);
-    assert_true(text_check(&text));
-    const struct {
-        enum text_align align;
-        int low, high; /* first and last column of the text, relative to the given point */
-    } cases[] = {{TEXT_LEFT, 0, 30}, {TEXT_CENTRE, -15, 15}, {TEXT_RIGHT, -30, 0}};
-    for (int i = 0; i < 3; i++) {
-        memset(rgba, 0, sizeof rgba);
-        text_draw(&text, rgba[0], WIDTH, HEIGHT, 33, 60, cases[i].align, orange);
-        assert_true(touched(rgba, box));
-        assert_in_range(box[0], 33 + cases[i].low, 33 + cases[i].low + 5);
-        assert_in_range(box[1], 33 + cases[i].high - 8, 33 + cases[i].high);
-        assert_in_range(box[2], 43, 47); /* capital letters are 0.73 of the size high */
-        assert_in_range(box[3], 58, 60);
-    }
-    /* Pixels that text covers wholly have its colour; so has a half-covered pixel that was
-     * transparent. */
-    bool solid = false;
-    for (int i = 0; i < HEIGHT * WIDTH; i++)
-        if (rgba[i][3]) {
-            assert_int_equal(rgba[i][0], 255);
-            assert_in_range(rgba[i][1], 127, 128);
-            assert_int_equal(rgba[i][2], 0);
-            solid |= rgba[i][3] == 255;
-        }
-    assert_true(solid);
-    /* Text across the picture's border, and far outside. */
-    for (int at = -40; at < 200; at += 7)
-        text_draw(&text, rgba[0], WIDTH, HEIGHT, at, at, TEXT_CENTRE, orange);
-    memset(rgba, 0, sizeof rgba);
-    text_draw(&text, rgba[0], WIDTH, HEIGHT, 10, 5000, TEXT_LEFT, orange);
-    text_draw(&text, rgba[0], WIDTH, HEIGHT, -5000, 60, TEXT_LEFT, orange);
-    text_draw(&text, rgba[0], WIDTH, HEIGHT, INT_MAX, INT_MIN, TEXT_LEFT, orange);
-    assert_false(touched(rgba, box));
-    text_finish(&text);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -433,7 +371,6 @@ int main(void)
         cmocka_unit_test(test_signatures),
         cmocka_unit_test(test_truncated),
         cmocka_unit_test(test_planes_a_format_cannot_hold),
-        cmocka_unit_test(test_text),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -11,11 +11,8 @@
 
 #include "server/output/legend.h"
 #include "server/output/false_colour.h"
-#include "tests/unit/build_folder.h"
 
 enum { MAX_PIXELS = 320 * 240 };
-
-static struct workers workers; /* draw the legend */
 
 static struct false_colour_extremes extremes; /* of the last painted picture */
 
@@ -70,7 +67,7 @@ static void paint_curvatures(sheen_ShowKind kind, double range, const float (*k)
     struct frame frame = frame_of(kind, (uint32_t)n, 1);
     memcpy(planes.curvature, k, n * sizeof *k);
     sheen_Show show = {.kind = kind, .has_range = true, .range = range};
-    false_colour_paint(&frame, &workers, &show, 1, MISS, EMPTY, &extremes);
+    false_colour_paint(&frame, &show, 1, MISS, EMPTY, &extremes);
     assert_true(show.range == range);
 }
 
@@ -114,7 +111,7 @@ static void test_no_surface(void **state)
         for (int k = 0; k < 2; k++)
             planes.curvature[0][k] = planes.curvature[1][k] = NAN;
         sheen_Show show = {.kind = kinds[i], .has_direction = true, .direction = {0, 0, 1}};
-        false_colour_paint(&frame, &workers, &show, 1, MISS, EMPTY, &extremes);
+        false_colour_paint(&frame, &show, 1, MISS, EMPTY, &extremes);
         assert_colour(0, EMPTIED);
         assert_colour(1, MISSED);
     }
@@ -137,7 +134,7 @@ static void test_outline(void **state)
         planes.normal[i][0] = colour_of_x[i];
     sheen_Show show = {.kind = sheen_ShowKind_SHOW_NORMAL};
     const float black[4] = {0, 0, 0, 1};
-    false_colour_paint(&frame, &workers, &show, 1, MISS, black, &extremes);
+    false_colour_paint(&frame, &show, 1, MISS, black, &extremes);
     assert_colour(0, 255, 128, 128, 255);
     assert_colour(1, 0, 112, 112, 255); /* 3/4 of the light */
     assert_colour(2, 0, 92, 92, 255);   /* the left neighbour's colour */
@@ -146,10 +143,10 @@ static void test_outline(void **state)
     assert_colour(5, 0, 0, 0, 255);
     assert_colour(6, 0, 92, 92, 255); /* the diagonal neighbour's colour */
     assert_colour(7, 0, 0, 0, 255);   /* no neighbour has a colour */
-    false_colour_paint(&frame, &workers, &show, 1, MISS, EMPTY, &extremes);
+    false_colour_paint(&frame, &show, 1, MISS, EMPTY, &extremes);
     assert_colour(1, 0, 128, 128, 191); /* EMPTY is transparent, so the colour is too */
     planes.normal[1][0] = NAN;
-    false_colour_paint(&frame, &workers, &show, 1, MISS, black, &extremes);
+    false_colour_paint(&frame, &show, 1, MISS, black, &extremes);
     assert_colour(1, 0, 44, 89, 255); /* 3/4 of MISS, because the pixel has no normal */
 }
 
@@ -160,7 +157,7 @@ static void test_normals(void **state)
     planes.normal[0][2] = 1;
     planes.normal[1][0] = -1;
     sheen_Show show = {.kind = sheen_ShowKind_SHOW_NORMAL};
-    false_colour_paint(&frame, &workers, &show, 1, MISS, EMPTY, &extremes);
+    false_colour_paint(&frame, &show, 1, MISS, EMPTY, &extremes);
     assert_colour(0, 128, 128, 255, 255);
     assert_colour(1, 0, 128, 128, 255);
     assert_false(show.has_range);
@@ -174,7 +171,7 @@ static void paint_drafts(sheen_Show *show, const double *deg, size_t n)
         planes.normal[i][0] = (float)cos(deg[i] * M_PI / 180);
         planes.normal[i][1] = -(float)sin(deg[i] * M_PI / 180);
     }
-    false_colour_paint(&frame, &workers, show, 1, MISS, EMPTY, &extremes);
+    false_colour_paint(&frame, show, 1, MISS, EMPTY, &extremes);
 }
 
 #define YELLOW 255, 224, 64, 255
@@ -224,7 +221,7 @@ static void test_ptex(void **state)
         planes.ptex[N + i] = (struct ptex){5, i & 1 ? 1 : 0, i & 2 ? 1 : 0};
     planes.ptex[N + 4] = (struct ptex){UINT32_MAX, 0, 0};
     sheen_Show show = {.kind = sheen_ShowKind_SHOW_PTEX};
-    false_colour_paint(&frame, &workers, &show, 1, MISS, EMPTY, &extremes);
+    false_colour_paint(&frame, &show, 1, MISS, EMPTY, &extremes);
     /* neighbouring numbers have very different colours, and all colours differ */
     for (int i = 0; i < N; i++)
         for (int j = 0; j < i; j++) {
@@ -249,7 +246,7 @@ static double range_of(sheen_ShowKind kind, double size, double scale, size_t n)
         planes.curvature[2 * i + 1][0] = NAN;
     }
     sheen_Show show = {.kind = kind};
-    false_colour_paint(&frame, &workers, &show, size, MISS, EMPTY, &extremes);
+    false_colour_paint(&frame, &show, size, MISS, EMPTY, &extremes);
     assert_true(show.has_range);
     return show.range;
 }
@@ -328,7 +325,7 @@ static void test_extremes(void **state)
             greatest = greatest == N || values[i] > values[greatest] ? i : greatest;
         }
         sheen_Show show = {.kind = kind};
-        false_colour_paint(&frame, &workers, &show, 1, MISS, EMPTY, &extremes);
+        false_colour_paint(&frame, &show, 1, MISS, EMPTY, &extremes);
         assert_true(extremes.has_values && least < N);
         assert_extreme(&extremes.least, values[least], least);
         assert_extreme(&extremes.greatest, values[greatest], greatest);
@@ -349,7 +346,7 @@ static void test_extremes_in_range(void **state)
         planes.ptex[i] = (struct ptex){0, i ? 1.00007f : -0.0004f, 0.5f};
     }
     sheen_Show show = {.kind = sheen_ShowKind_SHOW_MEAN};
-    false_colour_paint(&frame, &workers, &show, 1, MISS, EMPTY, &extremes);
+    false_colour_paint(&frame, &show, 1, MISS, EMPTY, &extremes);
     assert_true(extremes.least.u == 0 && extremes.greatest.u == 1);
     assert_true(extremes.least.position.x >= -1e30 && extremes.greatest.position.x <= 1e30);
 }
@@ -381,7 +378,7 @@ static void test_no_extremes(void **state)
     assert_int_equal(extremes.greatest.x_px, 2);
     struct frame frame = frame_of(sheen_ShowKind_SHOW_NORMAL, 2, 1);
     show = (sheen_Show){.kind = sheen_ShowKind_SHOW_NORMAL};
-    false_colour_paint(&frame, &workers, &show, 1, MISS, EMPTY, &extremes);
+    false_colour_paint(&frame, &show, 1, MISS, EMPTY, &extremes);
     assert_false(extremes.has_values);
 }
 
@@ -399,7 +396,7 @@ static void test_legend(void **state)
         planes.position[i][0] = NAN;
     const float black[4] = {0, 0, 0, 1};
     sheen_Show show = {.kind = sheen_ShowKind_SHOW_MEAN, .has_range = true, .range = 0.25};
-    false_colour_paint(&frame, &workers, &show, 1, MISS, black, &extremes);
+    false_colour_paint(&frame, &show, 1, MISS, black, &extremes);
     size_t n_white = 0, blue = 0, red = 0, outside = 0;
     for (uint32_t y = 0; y < height; y++)
         for (uint32_t x = 0; x < width; x++) {
@@ -419,7 +416,7 @@ static void test_legend(void **state)
     for (size_t i = 0; i < MAX_PIXELS; i++)
         planes.position[i][0] = NAN;
     show.has_legend = true; /* `legend` is given, as false */
-    false_colour_paint(&frame, &workers, &show, 1, MISS, black, &extremes);
+    false_colour_paint(&frame, &show, 1, MISS, black, &extremes);
     for (size_t i = 0; i < MAX_PIXELS; i++)
         assert_true(is_black(i));
     show.legend = true;
@@ -427,32 +424,15 @@ static void test_legend(void **state)
     frame = frame_of(sheen_ShowKind_SHOW_MEAN, width, LEGEND_MIN_HEIGHT_PX - 1);
     for (size_t i = 0; i < MAX_PIXELS; i++)
         planes.position[i][0] = NAN;
-    false_colour_paint(&frame, &workers, &show, 1, MISS, black, &extremes);
+    false_colour_paint(&frame, &show, 1, MISS, black, &extremes);
     for (size_t i = 0; i < MAX_PIXELS; i++)
         assert_true(is_black(i));
     frame = frame_of(sheen_ShowKind_SHOW_MEAN, 100, 240);
     for (size_t i = 0; i < MAX_PIXELS; i++)
         planes.position[i][0] = NAN;
-    false_colour_paint(&frame, &workers, &show, 1, MISS, black, &extremes);
+    false_colour_paint(&frame, &show, 1, MISS, black, &extremes);
     for (size_t i = 0; i < MAX_PIXELS; i++)
         assert_true(is_black(i));
-}
-
-static int start_workers(void **state)
-{
-    (void)state;
-    struct error error = {0};
-    const struct workers_limits limits = {(uint64_t)1 << 33, (uint64_t)1 << 33, 60, 120};
-    if (!workers_init(&workers, build_folder(), &limits, (uint64_t)1 << 32, &error))
-        fail_msg("%s", error.text);
-    return 0;
-}
-
-static int end_workers(void **state)
-{
-    (void)state;
-    workers_finish(&workers);
-    return 0;
 }
 
 int main(void)
@@ -470,5 +450,5 @@ int main(void)
         cmocka_unit_test(test_no_extremes),
         cmocka_unit_test(test_extremes_in_range),
     };
-    return cmocka_run_group_tests(tests, start_workers, end_workers);
+    return cmocka_run_group_tests(tests, NULL, NULL);
 }

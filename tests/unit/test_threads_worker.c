@@ -10,6 +10,7 @@
 
 #include <cmocka.h>
 #include <dirent.h>
+#include <errno.h>
 #include <pthread.h>
 #include <sched.h>
 #include <signal.h>
@@ -21,6 +22,7 @@
 #include <time.h>
 
 #include "server/threads/workers.h"
+#include "server/sandbox/landlock.h"
 #include "server/sandbox/threads.h"
 #include "tests/unit/build_folder.h"
 
@@ -399,6 +401,32 @@ static void test_a_program_stands_apart(void **state)
     fclose(file);
 }
 
+/* Asked for its version, the kernel tells whether it has Landlock. */
+static bool has_landlock(void)
+{
+    return syscall(SYS_landlock_create_ruleset, NULL, 0, 1) > 0;
+}
+
+static void test_landlock(void **state)
+{
+    (void)state;
+    pid_t pid = fork();
+    if (pid == 0) {
+        FILE *before = fopen("/proc/self/statm", "r");
+        char byte;
+        bool ok = before && fopen("/tmp", "r") && access("/proc", R_OK) == 0;
+        ok = ok && landlock_enter() == has_landlock();
+        ok = ok && fread(&byte, 1, 1, before) == 1;
+        if (has_landlock())
+            ok = ok && !fopen("/proc/self/statm", "r") && errno == EACCES && !fopen("/tmp", "r") &&
+                 mkdir("/tmp/sheen-landlock", 0700) < 0 && errno == EACCES;
+        _exit(ok ? 0 : 1);
+    }
+    int status;
+    assert_int_equal(waitpid(pid, &status, 0), pid);
+    assert_int_equal(status, 0);
+}
+
 /* A thread that is busy for a while and then waits, like the idle threads of libraries. */
 struct busy {
     atomic_bool done;
@@ -464,6 +492,7 @@ int main(void)
         cmocka_unit_test(test_inputs_are_lent),
         cmocka_unit_test(test_an_input_is_cut_and_fixed),
         cmocka_unit_test(test_a_program_stands_apart),
+        cmocka_unit_test(test_landlock),
         cmocka_unit_test(test_forks_among_idle_threads_only),
         cmocka_unit_test(test_no_program),
     };

@@ -258,6 +258,6 @@ static void run(struct source *input, struct sink *answer)
 
 int main(int argc, char **argv)
 {
-    static const struct zygote_task tasks[N_JOB_KINDS] = {[JOB_READ_CAGE] = {run, false}};
+    static const struct zygote_task tasks[N_JOB_KINDS] = {[JOB_READ_CAGE] = {run}};
     return zygote_main(argc, argv, tasks);
 }
