@@ -2,6 +2,7 @@
 import base64
 import collections
 import json
+import math
 import os
 import random
 import re
@@ -428,6 +429,42 @@ class Sessions(DaemonCase):
         self.assertGreater(n, 15)
 
 
+def folded(degrees, n=3):
+    """Two flat sheets of n by n faces that meet in a crease along y at x = 0 and z = 0, at this angle."""
+    turn = math.radians(degrees)
+    rows = [(x if x < 0 else x * math.cos(turn), y, 0 if x < 0 else x * math.sin(turn))
+            for y in range(n + 1) for x in range(-n, n + 1)]
+    side = 2 * n + 1
+    lines = ["v %.17g %.17g %.17g" % row for row in rows]
+    lines += ["f %d %d %d %d" % (a, a + 1, a + 1 + side, a + side)
+              for y in range(n) for x in range(2 * n) for a in [1 + y * side + x]]
+    lines += [f"t crease 2/1/0 {y * side + n} {(y + 1) * side + n} 10" for y in range(n)]
+    return "\n".join(lines).encode() + b"\n"
+
+
+class Computations(DaemonCase):
+    def test_breaks_of_a_fold(self):
+        with sheen.connect(self.daemon.unix) as session:
+            found = session.breaks(session.upload(folded(30), "fold.obj"))
+            self.assertEqual((found.edges_out, found.creases, found.joints, len(found.edges)), (3, 3, 0, 3))
+            self.assertTrue(found)
+            self.assertEqual(found.angle_deg, 0.1)
+            self.assertAlmostEqual(found.creases_length, 3, delta=1e-9)
+            self.assertEqual(found.edges["kind"].tolist(), [0, 0, 0])
+            self.assertTrue(np.allclose(found.edges["angle"]["value"], 30, rtol=0, atol=1e-6))
+            self.assertTrue(np.allclose(found.edges["length"], 1, rtol=0, atol=1e-9))
+            self.assertTrue(np.allclose(found.edges["angle"]["position"][:, (0, 2)], 0, atol=1e-9))
+            self.assertTrue(np.allclose(found.edges["gap"]["value"], 0, atol=1e-6))
+            loose = session.breaks(session.upload(folded(30), "fold.obj"), gap=1, angle_deg=40, curvature_percent=200)
+            self.assertEqual((bool(loose), loose.edges_out, loose.angle_deg), (False, 0, 40))
+            for options in ({"angle_deg": 0}, {"gap": -1}, {"curvature_percent": float("nan")}, {"fov": 200}):
+                with self.assertRaises((sheen.BadRequest, sheen.BadArgument)):
+                    session.breaks(session.upload(folded(30), "fold.obj"), **options)
+            closed = session.breaks(session.upload(CUBE, "cube.obj"))
+            self.assertEqual((len(closed.edges), len(closed.vertices), closed.borders), (0, 8, 0))
+            self.assertEqual(closed.vertices["faces"].tolist(), [3] * 8)
+
+
 class Loss(unittest.TestCase):
     def private(self, **options):
         return sheen.connect(sheend=SHEEND, device=DEVICE, **options)
@@ -572,6 +609,7 @@ class Hostile(unittest.TestCase):
                   for format, names in (("raw", some), ("zstd", some), ("png", "colour"))]
         frames += session.stream(model, [{"view": "left"}, {"view": "top", "show": "mean"}], size=(8, 8))
         session.stats()
+        session.breaks(session.upload(folded(30), "fold.obj"))
         return info, frames
 
     def work_with(self, relay):
@@ -581,7 +619,8 @@ class Hostile(unittest.TestCase):
     def test_recorded_answers(self):
         """Without a fault the work succeeds, so that faults are what makes it fail."""
         kinds = {kind for kind, _, _ in self.messages}
-        self.assertLessEqual({wire.HELLO_OK, wire.UPLOAD_STATE, wire.MODEL_INFO, wire.FRAME, wire.DATA, wire.STATS}, kinds)
+        self.assertLessEqual({wire.HELLO_OK, wire.UPLOAD_STATE, wire.MODEL_INFO, wire.FRAME, wire.DATA, wire.STATS,
+                              wire.BREAKS}, kinds)
         with FakeServer(self.answers) as server:
             info, frames = self.work_with(server)
         self.assertEqual((info.faces, len(frames)), (6, 5))

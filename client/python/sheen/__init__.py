@@ -8,6 +8,7 @@
         session.render(hood, camera=frame.camera.orbit(10), lines="zebra").save("zebra.png")
 
 The package speaks to the daemon by its protocol (protocol/README.md of the sources), without the C library."""
+from sheen.breaks import Breaks
 from sheen.errors import (BadArgument, BadImage, BadModel, BadPeer, BadRequest, BadVersion, Cancelled, DeviceFailed,
                           Error, GpuLost, Late, Lost, NoServer, Overloaded, ShuttingDown, Superseded, Timeout, TooBig,
                           UnknownModel)
@@ -22,7 +23,7 @@ from sheen.version import __version__
 
 connect = Session
 
-__all__ = ["BadArgument", "BadImage", "BadModel", "BadPeer", "BadRequest", "BadVersion", "Camera", "Cancelled",
+__all__ = ["BadArgument", "BadImage", "BadModel", "BadPeer", "BadRequest", "BadVersion", "Breaks", "Camera", "Cancelled",
            "DeviceFailed", "Error", "Extreme", "Frame", "GpuLost", "HelloOk", "Late", "Light", "Lines", "Lost", "Model",
            "ModelInfo", "NoServer", "Options", "Overloaded", "PLANES", "Pattern", "Pick", "Section", "Session", "ShuttingDown", "Stats",
            "Superseded", "Timeout", "Times", "TooBig", "UnknownModel", "__version__", "connect"]

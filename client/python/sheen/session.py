@@ -9,6 +9,7 @@ from typing import Callable, Generator, Iterable, Mapping, Sequence, Union, Unpa
 import numpy as np
 
 from sheen import files, header, messages, picks, planes
+from sheen.breaks import Breaks
 from sheen.connection import Connection, connect
 from sheen.daemon import PrivateDaemon
 from sheen.errors import (BadArgument, BadImage, BadModel, BadPeer, BadRequest, BadVersion, Cancelled, DeviceFailed,
@@ -458,6 +459,40 @@ class Session:
         places = [(start[0] + (end[0] - start[0]) * i / (samples - 1), start[1] + (end[1] - start[1]) * i / (samples - 1))
                   for i in range(samples - 1)] + [(end[0], end[1])]
         return Section.of(places, self._windows(model, places, camera, options))
+
+    # ---- computations ----
+
+    def _scene(self, model: Model | PathOrBytes, options: Options) -> messages.Render:
+        """The scene of a computation, of which no picture is drawn."""
+        self._check_idle()
+        if self.minor < 5:
+            raise BadArgument("the daemon is too old to compute this")
+        return self._render_of(model, ("position",), "raw", options)
+
+    def _compute(self, kind: Type, asked: Message, want: Type, cls: type[M], size_of: Callable[[M], int],
+                 progress: Progress | None) -> tuple[M, bytearray]:
+        """A computation's answer and its records, whose size `size_of` tells by the answer."""
+        seq = self._send_message(kind, asked)
+        body = self._expect(seq, want, cls, progress)
+        try:
+            size = size_of(body)
+        except Malformed as wrong:
+            raise self._bad_peer(f"{want.name}: {wrong}") from None
+        return body, self._read_data(seq, size)
+
+    def breaks(self, model: Model | PathOrBytes, *, gap: float | None = None, angle_deg: float | None = None,
+               curvature_percent: float | None = None, progress: Progress | None = None,
+               **options: Unpack[Options]) -> Breaks:
+        """Finds where lines on the surface break: along creases and joints, and at extraordinary vertices. The limits
+        `gap`, `angle_deg` and `curvature_percent` decide which edges are out of tolerance. The other options tell camera,
+        lights and lines, and `deadline`."""
+        asked = messages.FindBreaks(scene=self._scene(model, options), gap=gap, angle_deg=angle_deg,
+                                    curvature_percent=curvature_percent)
+        body, data = self._compute(Type.FIND_BREAKS, asked, Type.BREAKS, messages.Breaks, Breaks.data_bytes, progress)
+        try:
+            return Breaks.of(body, data)
+        except Malformed as wrong:
+            raise self._bad_peer(f"BREAKS: {wrong}") from None
 
     def _drop(self, waiting: Sequence[int]) -> None:
         """Takes back the requests that are still in flight."""
