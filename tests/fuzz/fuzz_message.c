@@ -37,6 +37,10 @@ static void check_render(const sheen_Render *render)
     MUST(!render->has_jpeg_quality || (render->jpeg_quality >= 1 && render->jpeg_quality <= 100));
     MUST(!render->has_jpeg_subsampling ||
          render->jpeg_subsampling <= sheen_JpegSubsampling_JPEG_420);
+    if (render->has_window)
+        MUST(render->window.x_px >= 0 && render->window.y_px >= 0 &&
+             floor(render->window.x_px) + render->width_px <= render->window.width_px &&
+             floor(render->window.y_px) + render->height_px <= render->window.height_px);
     if (render->has_camera)
         MUST(isfinite(render->camera.eye.x) && isfinite(render->camera.fov_deg));
 }

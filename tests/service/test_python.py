@@ -101,6 +101,52 @@ def pixels_of(png):
     return out.reshape(height, width, n)
 
 
+class Zstd(unittest.TestCase):
+    """Planes that are sent compressed, by each of the modules that Python may have."""
+
+    def test_modules(self):
+        import zstandard
+
+        class Own:
+            """The interface of Python 3.14's compression.zstd."""
+            class ZstdDecompressor:
+                def __init__(self):
+                    self.made = zstandard.ZstdDecompressor().decompressobj()
+
+                def decompress(self, data, max_length):
+                    return self.made.decompress(bytes(data))[:max_length]
+
+                eof = property(lambda self: self.made.eof)
+                unused_data = property(lambda self: self.made.unused_data)
+
+        # Colour has a strip of up to 131072 rows, position strips of 43690.
+        raw = {"colour": bytes(range(256)) * 1024, "position": random.Random(1).randbytes(12 * 65536)}
+        pack = zstandard.ZstdCompressor().compress
+        first = np.frombuffer(raw["position"], "u1").reshape(-1, 12)
+        strips = [pack(raw["colour"]), *(pack(np.ascontiguousarray(part.T)) for part in (first[:43690], first[43690:]))]
+        data = bytearray(b"".join(struct.pack("<I", len(strip)) for strip in strips) + b"".join(strips))
+        for module in (zstandard, Own):
+            planes = sheen.planes.empty(1, 65536, 3)
+            sheen.planes.unpack_zstd(module, data, 1, 65536, planes)
+            self.assertEqual({name: bits(array) for name, array in planes.items()}, raw)
+            for wrong in (data[:-1], data + b"x", data[:5], data[:12] + b"x" * (len(data) - 12),
+                          data[:12] + data[13:] + b"x"):
+                with self.assertRaises(protobuf.Malformed):
+                    sheen.planes.unpack_zstd(module, bytearray(wrong), 1, 65536, planes)
+
+    def test_without_a_module(self):
+        daemon = Daemon()
+        with sheen.connect(daemon.tcp) as session:
+            packed = session.render(session.upload(CUBE, "cube.obj"), planes=ALL, size=(40, 30))
+            session._zstd = None
+            plain = session.render(session.upload(CUBE, "cube.obj"), planes=ALL, size=(40, 30))
+            for name, array in packed.planes.items():
+                self.assertEqual(bits(array), bits(plain.planes[name]))
+            with self.assertRaisesRegex(sheen.BadArgument, "zstandard"):
+                session.render(session.upload(CUBE, "cube.obj"), format="zstd")
+        self.assertEqual(daemon.stop(), 0)
+
+
 class Same(DaemonCase):
     """The command, which uses libsheen, is the other client."""
     @classmethod

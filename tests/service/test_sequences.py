@@ -83,6 +83,9 @@ class Script:
         body += field(9, planes) + field(10, encoding)
         if noise.random() < 0.2:
             body += field(13, field(1, self.one_of(7)))
+        if noise.random() < 0.1:
+            body += field(18, b"".join(field(i, abs(self.number())) for i in (1, 2)) +
+                          b"".join(field(i, noise.choice((1, 16, 100, 1280, 65536))) for i in (3, 4)))
         if noise.random() < 0.7:
             body += field(14, self.one_of(3))
         if noise.random() < 0.3:
