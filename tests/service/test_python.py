@@ -277,6 +277,23 @@ class Windows(DaemonCase):
                                              (name, plane, x, y))
         self.assertGreater(n_hits, 100000)
 
+    def test_kept_planes(self):
+        """A second frame of a part is only shaded, and has the picture's places on another light."""
+        other = {"lines": "zebra", "pattern": "stripes:count=11"}
+        for device, most in (("software", 0), (MESA, 1e-4)):
+            daemon = Daemon("--device", device)
+            with sheen.connect(daemon.unix) as session:
+                whole = session.render(FENDER, planes=("colour", "light"), size=self.SIZE, **other)
+                for (x, y), size in (((120, 70), (100, 90)), ((100, 60), (60, 40)), ((160, 120), (1, 1))):
+                    with self.subTest(device=device, place=(x, y)):
+                        self.part(session, FENDER, (x, y), size)
+                        part = self.part(session, FENDER, (x, y), size, **other)
+                        self.assertEqual((part.times.visibility_us, part.times.evaluate_us), (0, 0))
+                        expected = whole.light[y:y + size[1], x:x + size[0]]
+                        self.assertTrue(np.isfinite(expected).any())
+                        self.assertTrue(np.allclose(part.light, expected, rtol=0, atol=most, equal_nan=True))
+            self.assertEqual(daemon.stop(), 0)
+
     def test_a_gl_device(self):
         """There the same, except for rounding."""
         daemon = Daemon("--device", MESA)
