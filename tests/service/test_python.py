@@ -806,6 +806,33 @@ class Tls(unittest.TestCase):
             self.assertEqual(daemon.stop(), 0)
 
 
+class Manual(unittest.TestCase):
+    """client/python/README.md."""
+
+    def rows(self, title):
+        with open(os.path.join(ROOT, "client", "python", "README.md"), encoding="utf-8") as file:
+            part = file.read().partition(f"## {title}\n")[2].partition("\n## ")[0]
+        return [row.split(" | ", 1) for row in re.findall(r"^\| (.*?) ?\|$", part, re.M)[1:]]
+
+    def test_errors(self):
+        codes = {}
+        for code, text in self.rows("Errors"):
+            for name in re.findall(r"`(\w+)`", text):
+                codes[name] = int(code)
+        found = {name: value.exit_code for name, value in vars(sheen).items()
+                 if isinstance(value, type) and issubclass(value, sheen.Error) and value is not sheen.Error}
+        self.assertEqual(codes, found)
+        fatal = {name for name, value in vars(sheen).items() if getattr(value, "is_fatal", False) is True}
+        self.assertEqual(fatal, {"NoServer", "Lost", "ShuttingDown", "BadPeer", "BadVersion", "Timeout"})
+
+    def test_planes_and_methods(self):
+        planes = [name for names, _ in self.rows("Frames") for name in re.findall(r"`(\w+)`", names)]
+        self.assertEqual(sorted(planes), sorted(sheen.PLANES))
+        methods = {name for names, *_ in self.rows("Sessions") for name in re.findall(r"`(\w+)\(", names)}
+        self.assertEqual(methods, {name for name, value in vars(sheen.Session).items()
+                                   if callable(value) and not name.startswith("_")} - {"close", "upload_image"})
+
+
 class Command(DaemonCase):
     def run_it(self, *words):
         return subprocess.run([sys.executable, *words], capture_output=True, text=True, timeout=60,
