@@ -219,6 +219,7 @@ class Same(DaemonCase):
         with open(os.path.join(self.folder, "a b", "fender.bin"), "wb") as file:
             file.write(base64.b64decode(gltf["buffers"][0]["uri"].partition(",")[2]))
         gltf["buffers"][0]["uri"] = "a%20b/fender.bin"
+        gltf["asset"]["extras"] = {"numbers": [0.1, -2.0, 1e300, 3.25e-7, 1e16, 7, True, None], "text": "\u00e9/\n\""}
         model = os.path.join(self.folder, "split.gltf")
         with open(model, "w", encoding="utf-8") as file:
             json.dump(gltf, file)

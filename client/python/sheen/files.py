@@ -54,6 +54,21 @@ def _buffer_file(path: Path, index: int, uri: str) -> bytes:
         raise BadModel(f"{path}: buffer {index}: {wrong}") from None
 
 
+def _real(value: float) -> str:
+    text = f"{value:.17g}"
+    mantissa, e, exponent = text.partition("e")
+    return f"{mantissa}e{int(exponent)}" if e else text if "." in text else text + ".0"
+
+
+def _json(value: Any) -> str:
+    """The text that the `sheen` command writes, so that equal models have equal ids: numbers have 17 digits."""
+    if isinstance(value, dict):
+        return "{" + ",".join(f"{_json(key)}:{_json(member)}" for key, member in value.items()) + "}"
+    if isinstance(value, list):
+        return "[" + ",".join(map(_json, value)) + "]"
+    return _real(value) if isinstance(value, float) else json.dumps(value, ensure_ascii=False)
+
+
 def _packed(path: Path, root: dict[str, Any], buffers: list[Any]) -> bytes:
     binary, places, kept = bytearray(), {}, [{"byteLength": 0}]
     for i, buffer in enumerate(buffers):
@@ -83,7 +98,7 @@ def _packed(path: Path, root: dict[str, Any], buffers: list[Any]) -> bytes:
                 raise BadModel(f"{path}: buffer view {i} does not lie within its buffer of {size} bytes")
             view["byteOffset"] = offset + start
         view["buffer"] = buffer
-    text = json.dumps(root, ensure_ascii=False, separators=(",", ":")).encode()
+    text = _json(root).encode()
     text += b" " * (-len(text) % 4)
     return (struct.pack("<4sIIII", b"glTF", 2, 28 + len(text) + len(binary), len(text), 0x4E4F534A) + text +
             struct.pack("<II", len(binary), 0x004E4942) + bytes(binary))
