@@ -239,6 +239,22 @@ class Same(DaemonCase):
                     self.assertEqual(found.box.tolist(), [expected["box_min"], expected["box_max"]])
                     self.assertEqual(found.warnings, expected["warnings"])
 
+    def test_json_that_cannot_be_written_again(self):
+        path = os.path.join(self.folder, "odd.gltf")
+        with open(os.path.join(self.folder, "one.bin"), "wb") as file:
+            file.write(b"1")
+        buffers = '"buffers":[{"uri":"one.bin","byteLength":1}]'
+        for extras in ("[" * 900 + "]" * 900, '"\\ud800"'):
+            with open(path, "w", encoding="ascii") as file:
+                file.write(f'{{"extras":{extras},{buffers}}}')
+            with self.assertRaisesRegex(sheen.BadModel, "JSON"):
+                sheen.files.read_model(path)
+        deep = f'{{"extras":{"[" * 100000},{buffers}}}'.encode()
+        for data in (deep, b"{", b'{"buffers":7}', b'{"buffers":[7,{"uri":7}]}', b"\xef\xbb\xbf {}"):
+            with open(path, "wb") as file:
+                file.write(data)
+            self.assertEqual(sheen.files.read_model(path), data)  # the daemon says what is wrong with it
+
     def test_files_outside_of_the_models_folder_are_not_sent(self):
         for uri in ("../x.bin", "/etc/passwd", "http://a/b", "link"):
             model = os.path.join(self.folder, "bad.gltf")

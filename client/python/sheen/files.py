@@ -98,7 +98,10 @@ def _packed(path: Path, root: dict[str, Any], buffers: list[Any]) -> bytes:
                 raise BadModel(f"{path}: buffer view {i} does not lie within its buffer of {size} bytes")
             view["byteOffset"] = offset + start
         view["buffer"] = buffer
-    text = _json(root).encode()
+    try:
+        text = _json(root).encode()
+    except (UnicodeEncodeError, RecursionError):
+        raise BadModel(f"{path}: its JSON is nested too deeply, or has half a character") from None
     text += b" " * (-len(text) % 4)
     return (struct.pack("<4sIIII", b"glTF", 2, 28 + len(text) + len(binary), len(text), 0x4E4F534A) + text +
             struct.pack("<II", len(binary), 0x004E4942) + bytes(binary))
@@ -112,7 +115,7 @@ def read_model(path: str | os.PathLike[str]) -> bytes:
         return data
     try:
         root = json.loads(text)
-    except ValueError:
+    except (ValueError, RecursionError):
         return data  # the reader at the daemon says what is wrong with it
     buffers = root.get("buffers")
     if not isinstance(buffers, list) or all(
