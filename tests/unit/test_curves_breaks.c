@@ -1,6 +1,7 @@
 /* Where lines break: against closed forms. Folds of known angle, joints of known curvature, kinks by the formula of
  * the surface's second form, borders, faces of a non-manifold edge, darts, semi-sharp creases, vertices. Random cages
  * are judged by tests/oracle/test_breaks.cpp. */
+#include <malloc.h>
 #include <string.h>
 
 #include "server/curves/breaks/breaks.h"
@@ -485,6 +486,37 @@ static void the_order_of_slices_changes_nothing(void **state)
     limit_tables_finish(&tables);
 }
 
+static size_t heap_bytes(void)
+{
+    const struct mallinfo2 info = mallinfo2();
+    return info.uordblks + info.hblkhd;
+}
+
+/* A computation takes at most the memory that it says, so that its client can be charged before it begins. (Sanitizers
+ * have another heap, of which the C library knows nothing.) */
+static void memory_is_bounded(void **state)
+{
+    (void)state;
+    struct limit_tables tables;
+    struct error error = {0};
+    build_fold(0.3, 60, 60, 10, &tables);
+    const size_t before = heap_bytes();
+    size_t most = 0;
+    struct computation *computation = start(&tables, &LIMITS);
+    for (unsigned phase = 0; computation->kind->stages[phase]; phase++) {
+        size_t n = 0;
+        assert_true(computation->kind->begin(computation, phase, &n, &error));
+        most = heap_bytes() - before > most ? heap_bytes() - before : most;
+        for (size_t i = 0; i < n; i++)
+            computation->kind->slice(computation, i);
+    }
+    assert_int_equal(breaks_result(computation).n_edges, 60);
+    assert_true(most <= breaks_bytes(&tables));
+    assert_true(60 * BREAK_EDGE_BYTES <= breaks_record_bytes(&tables));
+    computation_destroy(computation);
+    limit_tables_finish(&tables);
+}
+
 static void a_cancelled_computation_ends(void **state)
 {
     (void)state;
@@ -535,6 +567,7 @@ int main(void)
         cmocka_unit_test(a_fold_makes_lines_jump),
         cmocka_unit_test(vertices_of_a_cube),
         cmocka_unit_test(the_order_of_slices_changes_nothing),
+        cmocka_unit_test(memory_is_bounded),
         cmocka_unit_test(a_cancelled_computation_ends),
         cmocka_unit_test(edges_are_sorted),
     };
