@@ -10,6 +10,7 @@
 #include "client/cli/commands.h"
 #include "client/cli/files/file.h"
 #include "client/cli/options/values.h"
+#include "client/cli/output/breaks_picture.h"
 #include "client/cli/output/junit.h"
 #include "client/cli/output/scene_json.h"
 
@@ -362,6 +363,26 @@ static enum sheen_status write_junit(struct client *client, const struct options
     return status;
 }
 
+/* --- the picture */
+
+static enum sheen_status write_picture(struct client *client, const struct options *options,
+                                       const struct sheen_breaks *breaks)
+{
+    struct sheen_request request = options->request;
+    struct sheen_frame frame = SHEEN_FRAME_DEFAULTS;
+    struct canvas canvas = {.width_px = 0};
+    request.format = SHEEN_FORMAT_ZSTD;
+    request.planes = BREAKS_PICTURE_PLANES;
+    enum sheen_status status = client_render(client, options, &request, &frame);
+    if (!status && !breaks_picture(&canvas, &frame, breaks))
+        status = failure_set(&client->error, SHEEN_NO_MEMORY, "no memory for the picture");
+    if (!status)
+        status = canvas_write_png(&canvas, options->output, &client->error);
+    canvas_finish(&canvas);
+    sheen_frame_finish(&frame);
+    return status;
+}
+
 /* --- the command */
 
 static enum sheen_status ask(struct client *client, const struct options *options,
@@ -386,9 +407,11 @@ static enum sheen_status print(struct client *client, const struct options *opti
                                const struct sheen_breaks *breaks)
 {
     enum sheen_status status = SHEEN_OK;
-    progress_clear(&client->progress);
     if (options->junit)
         status = write_junit(client, options, breaks);
+    if (!status && options->output)
+        status = write_picture(client, options, breaks);
+    progress_clear(&client->progress);
     if (!status && options->json) {
         struct json json = {.out = stdout};
         print_json(&json, options, client, breaks);
@@ -405,6 +428,8 @@ static int run(const struct options *options)
     struct sheen_breaks breaks = SHEEN_BREAKS_DEFAULTS;
     enum sheen_status status =
         options->junit ? file_check_writable(options->junit, &client.error) : SHEEN_OK;
+    if (!status && options->output)
+        status = file_check_writable(options->output, &client.error);
     if (status)
         return client_finish(&client, status);
     status = client_init(&client, options);
@@ -434,6 +459,14 @@ static bool apply_curvature(struct options *options, const char *value, char *wh
                           why);
 }
 
+static bool apply_output(struct options *options, const char *value, char *why)
+{
+    enum sheen_format format;
+    options->output = value;
+    return (value_format(value, &format) && format == SHEEN_FORMAT_PNG) ||
+           options_refuse(why, "must end in .png");
+}
+
 static bool apply_junit(struct options *options, const char *value, char *why)
 {
     options->junit = value;
@@ -459,6 +492,10 @@ static const struct option_row ROWS[] = {
      "largest jump of the curvature across an edge, {},\n"
      "of the mean of both sides (default: 10)",
      apply_curvature, NULL},
+    {"output", 'o', "FILE",
+     "write a picture of the lines (.png) with the edges out of tolerance painted:\n"
+     "magenta, a gap; red, an angle; orange, the curvature",
+     apply_output, NULL},
     {"junit", 0, "FILE", "write a JUnit report, with a test case for each limit", apply_junit,
      NULL},
     {"deadline", 0, "MS", "give up after this time, {}\n(default: none)", apply_deadline, NULL},
@@ -466,7 +503,8 @@ static const struct option_row ROWS[] = {
 };
 
 static const struct option_row *const TABLES[] = {
-    ROWS, OPTIONS_SCENE, OPTIONS_MODEL, OPTIONS_COMMON, OPTIONS_RECONNECT, OPTIONS_OUTPUT, NULL};
+    ROWS,           OPTIONS_SIZE,      OPTIONS_SCENE,  OPTIONS_MODEL,
+    OPTIONS_COMMON, OPTIONS_RECONNECT, OPTIONS_OUTPUT, NULL};
 
 const struct command COMMAND_BREAKS = {
     .name = "breaks",
@@ -479,6 +517,7 @@ const struct command COMMAND_BREAKS = {
     .examples =
         "  sheen breaks hood.obj\n"
         "  sheen breaks hood.obj --angle 0.05 --gap 0.01 --curvature 5\n"
+        "  sheen breaks hood.obj -o breaks.png --view front\n"
         "  sheen breaks hood.obj --json --junit breaks.xml > breaks.json\n"
         "  sheen breaks hood.obj --lines highlight --light plane --pattern stripes:period=5\n",
     .takes_model = true,

@@ -10,6 +10,7 @@ import xml.etree.ElementTree as xml
 
 import schema
 from daemon import CUBE, MODELS, SHEEN
+from test_surface import read_png
 
 SCHEMAS = os.path.join(MODELS, "..", "..", "client", "schema")
 # A sheet that is folded along x = 0 by 30 degrees, with an infinitely sharp crease of three edges.
@@ -133,6 +134,30 @@ class BreaksCommand(unittest.TestCase):
         suite, = xml.parse(report).getroot()
         self.assertEqual(suite.get("failures"), "0")
         self.breaks(self.folded, "--junit", os.path.join(self.folder, "no", "folder.xml"), code=3)
+
+    def test_picture(self):
+        """The crease is painted red where it is seen, and nothing else is; within the limits nothing is painted."""
+        path = os.path.join(self.folder, "a.png")
+        # From above, 4 units high on 200 pixels: the fold runs down the middle, from y = 0 to y = 3.
+        view = ("--size", "200x200", "--ortho", "4", "--eye", "0,1.5,9", "--target", "0,1.5,0", "--up", "0,1,0")
+        self.breaks(self.folded, "-o", path, *view, code=1)
+        width, _, rows = read_png(path)
+        red = {(x, y) for y, row in enumerate(rows) for x in range(width) if row[3 * x:3 * x + 3] == bytes((255, 0, 0))}
+        self.assertLessEqual({x for x, _ in red}, set(range(97, 103)))
+        for y in range(30, 170):
+            self.assertIn((99, y), red)
+            self.assertIn((100, y), red)
+        self.assertFalse(any(y < 24 or y > 175 for _, y in red))
+        self.breaks(self.folded, "-o", path, "--angle", "31", *view, code=0)
+        width, _, rows = read_png(path)
+        self.assertTrue(all(row[3 * x] == row[3 * x + 1] for row in rows for x in range(width)))
+        self.assertIn("must end in .png", self.breaks(self.folded, "-o", "a.jpg", code=2).stderr)
+
+    def test_render_says_who_paints_breaks(self):
+        done = subprocess.run([SHEEN, "render", self.folded, "-o", "a.png", "--show", "breaks"], capture_output=True,
+                              text=True, timeout=60)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("sheen breaks MODEL -o FILE.png", done.stderr)
 
     def test_deadline(self):
         done = self.breaks(self.folded, "--deadline", "0", code=2)

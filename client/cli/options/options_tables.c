@@ -311,6 +311,8 @@ static bool apply_surface(struct options *options, const char *value, char *why)
 static bool apply_show(struct options *options, const char *value, char *why)
 {
     char reason[LIGHTS_WHY_BYTES];
+    if (strcmp(value, "breaks") == 0)
+        return options_refuse(why, "'sheen breaks MODEL -o FILE.png' paints breaks on the lines");
     return text_show(value, &options->request.show, reason) || options_refuse(why, "%s", reason);
 }
 

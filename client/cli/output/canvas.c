@@ -33,14 +33,20 @@ static uint8_t *pixel_at(struct canvas *canvas, uint32_t x, uint32_t y)
 }
 
 /* Blends one channel of a pixel over the canvas, in linear light. */
-static uint8_t over(uint8_t top, uint8_t alpha, uint8_t below)
+static uint8_t mix(uint8_t top, double share, uint8_t below)
 {
-    if (alpha == 255)
+    if (share == 1)
         return top;
-    double share = alpha / 255.0;
     double light =
         share * srgb_to_linear(top / 255.0) + (1 - share) * srgb_to_linear(below / 255.0);
     return (uint8_t)lround(255 * srgb_from_linear(light));
+}
+
+void canvas_paint(struct canvas *canvas, uint32_t x, uint32_t y, const uint8_t rgb[3], double share)
+{
+    uint8_t *to = pixel_at(canvas, x, y);
+    for (int k = 0; to && k < 3; k++)
+        to[k] = mix(rgb[k], share, to[k]);
 }
 
 void canvas_picture(struct canvas *canvas, uint32_t x, uint32_t y, const uint8_t (*rgba)[4],
@@ -50,7 +56,7 @@ void canvas_picture(struct canvas *canvas, uint32_t x, uint32_t y, const uint8_t
         for (uint32_t i = 0; i < width_px; i++, rgba++) {
             uint8_t *to = pixel_at(canvas, x + i, y + j);
             for (int k = 0; to && k < 3; k++)
-                to[k] = over((*rgba)[k], (*rgba)[3], to[k]);
+                to[k] = mix((*rgba)[k], (*rgba)[3] / 255.0, to[k]);
         }
 }
 

@@ -23,6 +23,10 @@ void canvas_finish(struct canvas *canvas); /* a zeroed canvas is safe */
 void canvas_picture(struct canvas *canvas, uint32_t x, uint32_t y, const uint8_t (*rgba)[4],
                     uint32_t width_px, uint32_t height_px);
 
+/* Paints a share, 0 to 1, of one pixel with a colour (sRGB); mixed in linear light. */
+void canvas_paint(struct canvas *canvas, uint32_t x, uint32_t y, const uint8_t rgb[3],
+                  double share);
+
 /* Draws one line of black text in the font of glyphs.h, each of its pixels `scale` wide. Nothing is
  * drawn at column x_end and beyond. */
 void canvas_text(struct canvas *canvas, uint32_t x, uint32_t y, uint32_t x_end, uint32_t scale,
