@@ -61,13 +61,13 @@ class Hostile(DaemonCase):
             self.assert_closed(client, wire.ERROR_VERSION, "version")
 
     def test_unknown_type(self):
-        for kind in (0, 17, 77, 255):
+        for kind in (0, max(wire.Type) + 1, 77, 255):
             for client in self.each():
                 client.send(message(kind, 2))
                 self.assert_closed(client, wire.ERROR_PROTOCOL, "type")
 
     def test_type_of_servers(self):
-        for kind in (wire.HELLO_OK, wire.FRAME, wire.DATA, wire.ERROR):
+        for kind in (wire.HELLO_OK, wire.FRAME, wire.DATA, wire.ERROR, wire.BREAKS):
             for client in self.each():
                 client.send(message(kind, 2, b"\x08\x01"))
                 self.assert_closed(client, wire.ERROR_PROTOCOL, "servers", 2)
