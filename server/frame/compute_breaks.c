@@ -37,8 +37,7 @@ static struct break_limits limits_of(const struct compute *compute)
 
 static uint64_t bytes_of(const struct compute *compute)
 {
-    const struct limit_tables *tables = compute->tables[0];
-    return breaks_bytes(tables) + breaks_record_bytes(tables);
+    return breaks_bytes(compute->tables[0]);
 }
 
 static struct computation *create(const struct compute *compute, struct error *error)

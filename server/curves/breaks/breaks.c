@@ -222,18 +222,12 @@ uint64_t breaks_bytes(const struct limit_tables *tables)
     const struct surface_edges_room room = surface_edges_room(tables);
     const uint64_t joints = breaks_most_joints(room.borders);
     const uint64_t edges = room.creases + joints;
-    return sizeof(struct breaks) + room.bytes +
+    return sizeof(struct breaks) + room.bytes + edges * BREAK_EDGE_BYTES +
+           room.sectors * (uint64_t)BREAK_VERTEX_BYTES +
            edges * (2 * sizeof(struct break_edge) + sizeof(struct break_sorted)) +
            joints * sizeof(struct surface_edge) + breaks_joints_bytes(room.borders) +
            (uint64_t)room.borders * sizeof(struct break_border) +
            (uint64_t)room.sectors * sizeof(struct break_vertex) + 4096;
-}
-
-uint64_t breaks_record_bytes(const struct limit_tables *tables)
-{
-    const struct surface_edges_room room = surface_edges_room(tables);
-    return (room.creases + breaks_most_joints(room.borders)) * (uint64_t)BREAK_EDGE_BYTES +
-           room.sectors * (uint64_t)BREAK_VERTEX_BYTES;
 }
 
 struct computation *breaks_create(const struct limit_tables *tables,

@@ -37,9 +37,8 @@ struct breaks_found {
     size_t n_vertices;
 };
 
-/* The largest number of bytes that the computation takes for a surface, and that the records of its result take. */
+/* The largest number of bytes that the computation takes for a surface, with the records of its result. */
 uint64_t breaks_bytes(const struct limit_tables *tables);
-uint64_t breaks_record_bytes(const struct limit_tables *tables);
 
 /* Copies lights and limits; `tables` must outlive the computation. NULL with ERROR_SERVER when memory is short. */
 struct computation *breaks_create(const struct limit_tables *tables,
