@@ -42,8 +42,10 @@ enum message_type {
     /* Computations; minor version 5. */
     MESSAGE_FIND_BREAKS = 17, /* client: FindBreaks */
     MESSAGE_BREAKS = 18,      /* server: Breaks; DATA follows if there are records */
+    MESSAGE_COMPARE = 19,     /* client: Compare */
+    MESSAGE_COMPARED = 20,    /* server: Compared */
 };
-enum { MESSAGE_TYPES = MESSAGE_BREAKS + 1 }; /* above every type */
+enum { MESSAGE_TYPES = MESSAGE_COMPARED + 1 }; /* above every type */
 
 struct message_header {
     uint8_t major;

@@ -15,6 +15,8 @@ FITS(sheen_Render_size, PROTOCOL_MAX_LARGE_BODY_BYTES);
 FITS(sheen_Frame_size, PROTOCOL_MAX_LARGE_BODY_BYTES);
 FITS(sheen_FindBreaks_size, PROTOCOL_MAX_LARGE_BODY_BYTES);
 FITS(sheen_Breaks_size, PROTOCOL_MAX_LARGE_BODY_BYTES);
+FITS(sheen_Compare_size, PROTOCOL_MAX_LARGE_BODY_BYTES);
+FITS(sheen_Compared_size, PROTOCOL_MAX_LARGE_BODY_BYTES);
 FITS(sheen_Superseded_size, PROTOCOL_MAX_SMALL_BODY_BYTES);
 FITS(sheen_Progress_size, PROTOCOL_MAX_SMALL_BODY_BYTES);
 FITS(sheen_Stats_size, PROTOCOL_MAX_SMALL_BODY_BYTES);
@@ -49,6 +51,10 @@ const pb_msgdesc_t *message_fields(uint8_t type)
         return sheen_FindBreaks_fields;
     case MESSAGE_BREAKS:
         return sheen_Breaks_fields;
+    case MESSAGE_COMPARE:
+        return sheen_Compare_fields;
+    case MESSAGE_COMPARED:
+        return sheen_Compared_fields;
     default:
         return NULL;
     }

@@ -18,5 +18,7 @@ bool check_whole_scene(const sheen_Camera *camera, const sheen_Lines *lines,
 
 /* The answer BREAKS (message_check_numbers.c). */
 bool check_breaks(const sheen_Breaks *breaks, char *text);
+/* The answer COMPARED. */
+bool check_compared(const sheen_Compared *compared, char *text);
 
 #endif

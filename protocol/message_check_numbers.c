@@ -50,3 +50,85 @@ bool check_breaks(const sheen_Breaks *breaks, char *text)
                              text) &&
            check_text(breaks->server, "server", text);
 }
+
+bool message_check_compare(const sheen_Compare *asked, char text[static MESSAGE_TEXT_BYTES])
+{
+    return check_scene(&asked->scene, text) &&
+           (!asked->has_distance || check_number(asked->distance, RANGE_COMPARE_DISTANCE, text)) &&
+           (!asked->has_normal_deg ||
+            check_number(asked->normal_deg, RANGE_COMPARE_NORMAL, text)) &&
+           (!asked->has_lines || check_number(asked->lines, RANGE_COMPARE_LINES, text)) &&
+           (!asked->has_line_length ||
+            check_number(asked->line_length, RANGE_COMPARE_LENGTH, text)) &&
+           (!asked->has_curvature ||
+            check_number(asked->curvature, RANGE_COMPARE_CURVATURE, text)) &&
+           (!asked->has_samples || check_number(asked->samples, RANGE_COMPARE_SAMPLES, text));
+}
+
+static bool is_quantity(double value)
+{
+    return value >= 0 && isfinite(value);
+}
+
+static bool is_place(const sheen_ComparedPlace *place)
+{
+    return place->u >= -1e-3 && place->u <= 1.001 && place->v >= -1e-3 && place->v <= 1.001 &&
+           isfinite(place->position.x) && isfinite(place->position.y) &&
+           isfinite(place->position.z);
+}
+
+static bool check_measure(bool has, const sheen_ComparedMeasure *measure, const char *name,
+                          char *text)
+{
+    if (!has)
+        return true;
+    bool is_right = isfinite(measure->worst) && is_quantity(measure->rms) &&
+                    is_quantity(measure->p95) && is_quantity(measure->p99) &&
+                    is_quantity(measure->area_out) && is_place(&measure->old) &&
+                    is_place(&measure->new);
+    return is_right || check_refuse(text, "%s has a number out of its range", name);
+}
+
+static bool check_side(const sheen_ComparedSide *side, char *text)
+{
+    if (!is_quantity(side->area) || !is_quantity(side->area_uncovered) ||
+        !is_quantity(side->area_rewound) || !is_quantity(side->area_unlit) ||
+        (side->has_uncovered && !is_place(&side->uncovered)))
+        return check_refuse(text, "an area or the place of what is missing is out of its range");
+    return check_measure(side->has_distance, &side->distance, "distance", text) &&
+           check_measure(side->has_normal_deg, &side->normal_deg, "normal_deg", text) &&
+           check_measure(side->has_lines, &side->lines, "lines", text) &&
+           check_measure(side->has_line_length, &side->line_length, "line_length", text) &&
+           check_measure(side->has_curvature, &side->curvature, "curvature", text);
+}
+
+static bool check_alignment(const sheen_Alignment *alignment, char *text)
+{
+    const sheen_Vec3 *const vectors[] = {&alignment->x, &alignment->y, &alignment->z,
+                                         &alignment->shift};
+    bool is_right = is_quantity(alignment->rotation_deg) && is_quantity(alignment->rms_before) &&
+                    is_quantity(alignment->rms_after);
+    for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++)
+        is_right = is_right && isfinite(vectors[i]->x) && isfinite(vectors[i]->y) &&
+                   isfinite(vectors[i]->z);
+    return is_right || check_refuse(text, "alignment has a number out of its range");
+}
+
+bool check_compared(const sheen_Compared *compared, char *text)
+{
+    if (!is_quantity(compared->diagonal) || !is_quantity(compared->distance_floor) ||
+        !is_quantity(compared->normal_floor_deg))
+        return check_refuse(text, "diagonal or a floor is out of its range");
+    return check_side(&compared->old, text) && check_side(&compared->new, text) &&
+           check_number(compared->distance, RANGE_COMPARE_DISTANCE, text) &&
+           check_number(compared->normal_deg, RANGE_COMPARE_NORMAL, text) &&
+           check_number(compared->lines, RANGE_COMPARE_LINES, text) &&
+           (!compared->has_line_length ||
+            check_number(compared->line_length, RANGE_COMPARE_LENGTH, text)) &&
+           (!compared->has_curvature ||
+            check_number(compared->curvature, RANGE_COMPARE_CURVATURE, text)) &&
+           (!compared->has_alignment || check_alignment(&compared->alignment, text)) &&
+           check_whole_scene(&compared->camera, &compared->lines_used, compared->lights,
+                             compared->lights_count, text) &&
+           check_text(compared->server, "server", text);
+}

@@ -38,6 +38,12 @@ NAMES(sheen_Times);
 NAMES(sheen_Frame);
 NAMES(sheen_FindBreaks);
 NAMES(sheen_Breaks);
+NAMES(sheen_ComparedPlace);
+NAMES(sheen_ComparedMeasure);
+NAMES(sheen_ComparedSide);
+NAMES(sheen_Alignment);
+NAMES(sheen_Compare);
+NAMES(sheen_Compared);
 NAMES(sheen_Progress);
 NAMES(sheen_Latency);
 NAMES(sheen_Stats);
@@ -51,14 +57,36 @@ static const struct {
     const pb_msgdesc_t *fields;
     const struct field_name *names;
 } MESSAGES[] = {
-    MESSAGE(sheen_Vec3),       MESSAGE(sheen_Colour),       MESSAGE(sheen_Hello),
-    MESSAGE(sheen_HelloOk),    MESSAGE(sheen_UploadBegin),  MESSAGE(sheen_UploadState),
-    MESSAGE(sheen_ModelQuery), MESSAGE(sheen_ValenceCount), MESSAGE(sheen_ModelInfo),
-    MESSAGE(sheen_Finding),    MESSAGE(sheen_Camera),       MESSAGE(sheen_Pattern),
-    MESSAGE(sheen_Light),      MESSAGE(sheen_Lines),        MESSAGE(sheen_Show),
-    MESSAGE(sheen_Render),     MESSAGE(sheen_Times),        MESSAGE(sheen_Frame),
-    MESSAGE(sheen_Progress),   MESSAGE(sheen_Latency),      MESSAGE(sheen_Stats),
-    MESSAGE(sheen_FindBreaks), MESSAGE(sheen_Breaks),       MESSAGE(sheen_Error),
+    MESSAGE(sheen_Vec3),
+    MESSAGE(sheen_Colour),
+    MESSAGE(sheen_Hello),
+    MESSAGE(sheen_HelloOk),
+    MESSAGE(sheen_UploadBegin),
+    MESSAGE(sheen_UploadState),
+    MESSAGE(sheen_ModelQuery),
+    MESSAGE(sheen_ValenceCount),
+    MESSAGE(sheen_ModelInfo),
+    MESSAGE(sheen_Finding),
+    MESSAGE(sheen_Camera),
+    MESSAGE(sheen_Pattern),
+    MESSAGE(sheen_Light),
+    MESSAGE(sheen_Lines),
+    MESSAGE(sheen_Show),
+    MESSAGE(sheen_Render),
+    MESSAGE(sheen_Times),
+    MESSAGE(sheen_Frame),
+    MESSAGE(sheen_Progress),
+    MESSAGE(sheen_Latency),
+    MESSAGE(sheen_Stats),
+    MESSAGE(sheen_FindBreaks),
+    MESSAGE(sheen_Breaks),
+    MESSAGE(sheen_ComparedPlace),
+    MESSAGE(sheen_ComparedMeasure),
+    MESSAGE(sheen_ComparedSide),
+    MESSAGE(sheen_Alignment),
+    MESSAGE(sheen_Compare),
+    MESSAGE(sheen_Compared),
+    MESSAGE(sheen_Error),
 };
 
 #define MAX_TAG 64    /* larger than every tag in sheen.proto */

@@ -50,6 +50,12 @@ const struct range RANGES[N_RANGES] = {
     [RANGE_GAP] = {"gap", "--gap", 0, GREATEST, true, "units"},
     [RANGE_ANGLE] = {"angle_deg", "--angle", 0, 180, true, "degrees"},
     [RANGE_PERCENT] = {"curvature_percent", "--curvature", 0, 200, true, "percent"},
+    [RANGE_COMPARE_DISTANCE] = {"distance", "--limit distance", 0, GREATEST, true, "units"},
+    [RANGE_COMPARE_NORMAL] = {"normal_deg", "--limit normal_deg", 0, 180, true, "degrees"},
+    [RANGE_COMPARE_LINES] = {"lines", "--limit lines", 0, 1e6, true, "spacings"},
+    [RANGE_COMPARE_LENGTH] = {"line_length", "--limit line_length", 0, GREATEST, true, "units"},
+    [RANGE_COMPARE_CURVATURE] = {"curvature", "--limit curvature", 0, 2, true, ""},
+    [RANGE_COMPARE_SAMPLES] = {"samples", "--samples", 1000, 100000000, false, ""},
 };
 
 bool range_holds(const struct range *range, double value)

@@ -9,8 +9,7 @@
 
 const struct compute_kind *compute_kind_of(uint8_t type)
 {
-    (void)type;
-    return &compute_breaks_kind;
+    return type == MESSAGE_COMPARE ? &compute_compare_kind : &compute_breaks_kind;
 }
 
 struct compute *compute_create(struct request *request, uint8_t type,

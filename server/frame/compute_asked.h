@@ -6,6 +6,7 @@
 
 union compute_asked {
     sheen_FindBreaks find_breaks;
+    sheen_Compare compare;
 };
 
 #endif

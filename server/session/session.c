@@ -155,6 +155,7 @@ static void on_message(void *owner, const struct message_header *header, const u
     case MESSAGE_MODEL_QUERY:
     case MESSAGE_RENDER:
     case MESSAGE_FIND_BREAKS:
+    case MESSAGE_COMPARE:
         handle_body(session, header, body);
         break;
     default:

@@ -173,8 +173,8 @@ void session_query(struct session *session, uint32_t seq, const sheen_ModelQuery
 static bool check_asked(uint8_t type, const union compute_asked *asked,
                         char text[static MESSAGE_TEXT_BYTES])
 {
-    (void)type;
-    return message_check_find_breaks(&asked->find_breaks, text);
+    return type == MESSAGE_COMPARE ? message_check_compare(&asked->compare, text)
+                                   : message_check_find_breaks(&asked->find_breaks, text);
 }
 
 void session_compute(struct session *session, uint32_t seq, uint8_t type,

@@ -22,6 +22,8 @@ union body {
     sheen_Superseded superseded;
     sheen_FindBreaks find_breaks;
     sheen_Breaks breaks;
+    sheen_Compare compare;
+    sheen_Compared compared;
 };
 
 static void check_render(const sheen_Render *render)
@@ -52,6 +54,8 @@ static void check(uint8_t type, const union body *body)
         check_render(&body->render);
     else if (type == MESSAGE_FIND_BREAKS)
         MUST(message_check_find_breaks(&body->find_breaks, text) || text[0]);
+    else if (type == MESSAGE_COMPARE)
+        MUST(message_check_compare(&body->compare, text) || text[0]);
     else if (type == MESSAGE_UPLOAD_BEGIN)
         MUST(message_check_upload_begin(&body->upload_begin, text) || text[0]);
     else if (type == MESSAGE_MODEL_QUERY)

@@ -37,6 +37,8 @@ static void same_message(uint8_t type, uint32_t seq, const void *body, const uin
         sheen_Superseded superseded;
         sheen_FindBreaks find_breaks;
         sheen_Breaks breaks;
+        sheen_Compare compare;
+        sheen_Compared compared;
     } decoded;
     assert_int_equal(message_header_decode(&header, bytes), HEADER_OK);
     assert_int_equal(header.type, type);
@@ -421,6 +423,63 @@ static void check_break_records(const uint8_t *bytes, size_t size)
 
 /* Another version of zstd may compress differently: so the example is unpacked, and its pixels,
  * packed anew, must unpack to the same pixels. */
+static void check_compare(const uint8_t *bytes, size_t size)
+{
+    sheen_Compare asked = {.scene = least_render(sheen_Encoding_ENCODING_PNG),
+                           .has_normal_deg = true,
+                           .normal_deg = 0.1,
+                           .has_align = true,
+                           .align = true};
+    for (size_t i = 0; i < sizeof asked.new_sha256; i++)
+        asked.new_sha256[i] = (uint8_t)(0xff - i);
+    same_message(MESSAGE_COMPARE, 13, &asked, bytes, size);
+}
+
+static void check_compared(const uint8_t *bytes, size_t size)
+{
+    const sheen_ComparedMeasure distance = {.worst = -0.25,
+                                            .old = {3, 0.5, 0.25, {1, 2, 3}},
+                                            .new = {4, 0.5, 0.75, {1, 2, 2.75}},
+                                            .rms = 0.125,
+                                            .p95 = 0.1875,
+                                            .p99 = 0.21875,
+                                            .area_out = 1.5};
+    const sheen_Compared compared = {
+        .old = {.samples = 500000,
+                .area = 6,
+                .area_uncovered = 0.5,
+                .has_uncovered = true,
+                .uncovered = {7, 0, 1, {0, 1, 0}},
+                .has_distance = true,
+                .distance = distance},
+        .new = {.samples = 500000, .area = 5.5},
+        .diagonal = 4,
+        .distance_floor = 6e-8,
+        .normal_floor_deg = 2e-5,
+        .distance = 4e-5,
+        .normal_deg = 0.1,
+        .lines = 0.1,
+        .has_alignment = true,
+        .alignment = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 0.5}, 0, 0.5, 0},
+        .total_us = 1500,
+        .camera = CAMERA,
+        .lights_count = 1,
+        .lights = {{.has_centre = true,
+                    .centre = {0, 0, 4},
+                    .has_u = true,
+                    .u = {4, 0, 0},
+                    .has_v = true,
+                    .v = {0, 4, 0},
+                    .has_pattern = true,
+                    .pattern = {.kind = sheen_PatternKind_PATTERN_STRIPES,
+                                .has_count = true,
+                                .count = 20}}},
+        .server = "0.1.0"};
+    char text[MESSAGE_TEXT_BYTES];
+    same_message(MESSAGE_COMPARED, 13, &compared, bytes, size);
+    assert_true(message_check_answer(MESSAGE_COMPARED, &compared, text));
+}
+
 static void check_zstd_data(const uint8_t *bytes, size_t size)
 {
     const uint8_t colour[8] = {255, 255, 255, 255, 0, 0, 0, 0};
@@ -518,6 +577,8 @@ static const struct {
     {"find-breaks", check_find_breaks},
     {"breaks", check_breaks},
     {"break-records", check_break_records},
+    {"compare", check_compare},
+    {"compared", check_compared},
 };
 #define N_EXAMPLES (sizeof(EXAMPLES) / sizeof(*EXAMPLES))
 

@@ -392,15 +392,57 @@ static void limits_of_breaks_agree_at_each_end(void **state)
     }
 }
 
+/* --- the numbers that only a COMPARE has; the last one is whole */
+
+static const enum range_name COMPARED[] = {RANGE_COMPARE_DISTANCE,  RANGE_COMPARE_NORMAL,
+                                           RANGE_COMPARE_LINES,     RANGE_COMPARE_LENGTH,
+                                           RANGE_COMPARE_CURVATURE, RANGE_COMPARE_SAMPLES};
+#define N_COMPARED (sizeof COMPARED / sizeof *COMPARED)
+
+static bool compare_is_taken(size_t i, double value)
+{
+    char text[MESSAGE_TEXT_BYTES];
+    sheen_Compare asked = {.scene = GOOD, .has_samples = i == N_COMPARED - 1};
+    bool *const has[] = {&asked.has_distance, &asked.has_normal_deg, &asked.has_lines,
+                         &asked.has_line_length, &asked.has_curvature};
+    double *const member[] = {&asked.distance, &asked.normal_deg, &asked.lines, &asked.line_length,
+                              &asked.curvature};
+    if (asked.has_samples) {
+        asked.samples = (uint32_t)value;
+    } else {
+        *has[i] = true;
+        *member[i] = value;
+    }
+    return message_check_compare(&asked, text);
+}
+
+static void numbers_of_comparisons_agree_at_each_end(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < N_COMPARED; i++) {
+        const struct range *range = &RANGES[COMPARED[i]];
+        enum kind kind = i == N_COMPARED - 1 ? WHOLE : REAL;
+        assert_int_equal(compare_is_taken(i, range->least), !range->above_least);
+        assert_true(compare_is_taken(i, next(kind, range->least, INFINITY)));
+        assert_false(compare_is_taken(i, next(kind, range->least, -INFINITY)));
+        assert_true(compare_is_taken(i, range->greatest));
+        assert_false(compare_is_taken(i, next(kind, range->greatest, INFINITY)));
+        assert_false(kind == REAL && compare_is_taken(i, (double)NAN));
+    }
+}
+
 static bool is_limit(const struct range *range)
 {
+    for (size_t i = 0; i < N_COMPARED; i++)
+        if (range == &RANGES[COMPARED[i]])
+            return true;
     for (size_t i = 0; i < N_LIMITS; i++)
         if (range == &RANGES[LIMITS[i]])
             return true;
     return false;
 }
 
-/* FIELDS or LIMITS have every range of the table. */
+/* FIELDS, LIMITS or COMPARED have every range of the table. */
 static void every_range_is_tried(void **state)
 {
     (void)state;
@@ -476,6 +518,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(all_agree_at_each_end),
         cmocka_unit_test(limits_of_breaks_agree_at_each_end),
+        cmocka_unit_test(numbers_of_comparisons_agree_at_each_end),
         cmocka_unit_test(every_range_is_tried),
         cmocka_unit_test(directions_agree),
         cmocka_unit_test(ranges_read_well),

@@ -73,6 +73,11 @@ struct comparison_result {
     double rotation_deg, rms_before, rms_after;
 };
 
+/* An upper bound of the memory that a comparison of these surfaces by n_samples needs; more pieces of a surface than
+ * these bytes have room for are refused while it runs. */
+size_t comparison_bytes(const struct limit_tables *const tables[COMPARISON_SIDES],
+                        size_t n_samples);
+
 /* NULL with ERROR_SERVER (no memory) or ERROR_MODEL (a side has no surface). */
 struct computation *comparison_create(const struct comparison_setup *setup, struct error *error);
 /* The result, which the computation owns. */

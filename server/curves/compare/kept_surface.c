@@ -35,6 +35,14 @@ static size_t bytes_of(size_t n_leaves, size_t n_levels)
     return n_leaves * sizeof(struct kept_leaf) + n_levels * sizeof(struct limit_patch);
 }
 
+size_t kept_surface_most_bytes(const struct limit_tables *tables, size_t *n_parts)
+{
+    size_t n_leaves, n_levels;
+    count(tables, KEPT_LEVELS, &n_leaves, &n_levels);
+    *n_parts = 3 * n_levels + n_leaves;
+    return bytes_of(n_leaves, n_levels);
+}
+
 bool kept_surface_init(struct kept_surface *surface, const struct limit_tables *tables,
                        size_t most_bytes, struct error *error)
 {

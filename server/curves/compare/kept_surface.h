@@ -46,6 +46,8 @@ enum { KEPT_LEVELS = 5 };
 bool kept_surface_init(struct kept_surface *surface, const struct limit_tables *tables,
                        size_t most_bytes, struct error *error);
 void kept_surface_finish(struct kept_surface *surface);
+/* The bytes of a surface with KEPT_LEVELS levels of each CORNER, and the largest number of its patches. */
+size_t kept_surface_most_bytes(const struct limit_tables *tables, size_t *n_parts);
 size_t kept_surface_bytes(const struct kept_surface *surface);
 /* Makes the levels of a leaf and estimates its area. */
 void kept_surface_fill(struct kept_surface *surface, size_t leaf);

@@ -32,6 +32,9 @@ enum { LEAVES_OF_SLICE = 64, SAMPLES_OF_SLICE = 1000, WINDING_SAMPLES = 512 };
  * within how much a face that is wound differently counts. */
 static const double REACH = 100, COINCIDENT = 10, TOLERANCE = 0.1;
 
+/* Values and weight of a sample, and its share of the list that gives quantiles. */
+enum { SAMPLE_BYTES = (COMPARISON_MEASURES + 1) * sizeof(float) * 2, LEAST_SAMPLES_OF_PART = 1 };
+
 static size_t leaf_slices(const struct comparison_part *part)
 {
     return (part->surface.n_leaves + LEAVES_OF_SLICE - 1) / LEAVES_OF_SLICE;
@@ -108,7 +111,10 @@ static bool begin_fill(struct comparison *comparison, size_t *n_slices, struct e
 {
     for (int k = 0; k < COMPARISON_SIDES; k++) {
         struct comparison_part *part = &comparison->part[k];
-        if (!surface_tree_allocate(&part->tree, bytes_left(comparison), error))
+        /* The other tree needs memory too, and the samples of both sides. */
+        size_t samples = comparison->setup.n_samples * SAMPLE_BYTES, left = bytes_left(comparison);
+        size_t most = (left > samples ? left - samples : 0) / (k ? 1 : 2);
+        if (!surface_tree_allocate(&part->tree, most, error))
             return false;
         *n_slices += leaf_slices(part);
     }
@@ -221,7 +227,7 @@ static bool begin_part(struct comparison *comparison, enum comparison_side side,
     if (!surface_samples_init(&part->samples, &part->surface, setup->n_samples / 2, error))
         return false;
     size_t n = surface_samples_count(&part->samples);
-    if (n * (COMPARISON_MEASURES + 1) * sizeof(float) * 2 > bytes_left(comparison))
+    if (n * SAMPLE_BYTES > bytes_left(comparison))
         return error_set(error, ERROR_SERVER,
                          "%zu samples need more memory than the %zu MB that a computation may take",
                          n, setup->most_bytes >> 20);
@@ -369,6 +375,20 @@ static double diagonal_of(const struct limit_tables *tables)
         sum += side * side;
     }
     return sqrt(sum);
+}
+
+size_t comparison_bytes(const struct limit_tables *const tables[COMPARISON_SIDES], size_t n_samples)
+{
+    enum { PIECES_OF_PART = 4 }; /* the car needs 1 on average; a part has 64 at most */
+    const size_t piece = sizeof(struct tree_piece) + sizeof(struct tree_box);
+    size_t sum = 0, n_parts;
+    for (int k = 0; k < COMPARISON_SIDES; k++) {
+        size_t kept = kept_surface_most_bytes(tables[k], &n_parts);
+        /* begin_keep() leaves as much for the other surface and for the trees. */
+        sum += (k ? 2 : 3) * kept +
+               n_parts * (PIECES_OF_PART * piece + LEAST_SAMPLES_OF_PART * SAMPLE_BYTES);
+    }
+    return sum + n_samples * SAMPLE_BYTES;
 }
 
 struct computation *comparison_create(const struct comparison_setup *setup, struct error *error)

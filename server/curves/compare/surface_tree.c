@@ -4,10 +4,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* A part of a leaf is cut until its derivatives turn by at most this over a piece, rad, but into at most MOST_CUTS x
- * MOST_CUTS pieces. */
+/* A part of a leaf is cut until its derivatives turn by at most this over a piece, rad. */
 static const double MOST_TURN = 0.35;
-enum { MOST_CUTS = 8 };
 /* Pieces of a node without children, and of a subtree that is sorted in one go. */
 enum { PIECES_OF_NODE = 4, PIECES_OF_SUBTREE = 4096 };
 
@@ -15,12 +13,15 @@ bool surface_tree_init(struct surface_tree *tree, const struct kept_surface *sur
                        struct error *error)
 {
     *tree = (struct surface_tree){.surface = surface};
+    tree->n_pieces_of = calloc(surface->n_leaves + 1, sizeof *tree->n_pieces_of);
     tree->first_piece = calloc(surface->n_leaves + 1, sizeof *tree->first_piece);
-    return tree->first_piece || error_set(error, ERROR_SERVER, "no memory for a surface's tree");
+    return (tree->n_pieces_of && tree->first_piece) ||
+           error_set(error, ERROR_SERVER, "no memory for a surface's tree");
 }
 
 void surface_tree_finish(struct surface_tree *tree)
 {
+    free(tree->n_pieces_of);
     free(tree->first_piece);
     free(tree->pieces);
     free(tree->boxes);
@@ -29,7 +30,7 @@ void surface_tree_finish(struct surface_tree *tree)
 
 size_t surface_tree_bytes(const struct surface_tree *tree)
 {
-    return (tree->surface->n_leaves + 1) * sizeof *tree->first_piece +
+    return (tree->surface->n_leaves + 1) * (sizeof *tree->first_piece + sizeof *tree->n_pieces_of) +
            tree->n_pieces * sizeof *tree->pieces +
            (tree->boxes ? ((size_t)2 << tree->depth) * sizeof *tree->boxes : 0);
 }
@@ -81,9 +82,9 @@ static double turn_of(const struct vec net[16], int stride, int across)
     return most;
 }
 
-/* The number of pieces along each side of a part. */
+/* The number of pieces along each side of a part, at most `most`. */
 static unsigned cuts_of(const struct kept_surface *surface, size_t leaf,
-                        const struct kept_part *part)
+                        const struct kept_part *part, unsigned most)
 {
     if (part->is_rest)
         return 1;
@@ -91,7 +92,7 @@ static unsigned cuts_of(const struct kept_surface *surface, size_t leaf,
     net_of_part(surface, leaf, part, net);
     double turn = fmax(turn_of(net, 1, 4), turn_of(net, 4, 1));
     unsigned cuts = 1;
-    while (cuts < MOST_CUTS && turn > MOST_TURN * cuts)
+    while (cuts < most && turn > MOST_TURN * cuts)
         cuts *= 2;
     return cuts;
 }
@@ -99,36 +100,50 @@ static unsigned cuts_of(const struct kept_surface *surface, size_t leaf,
 void surface_tree_divide(struct surface_tree *tree, size_t leaf)
 {
     struct kept_part parts[KEPT_PARTS];
-    unsigned n = kept_surface_parts(tree->surface, leaf, parts), n_pieces = 0;
+    unsigned n = kept_surface_parts(tree->surface, leaf, parts);
+    uint32_t *n_pieces = tree->n_pieces_of[leaf];
     for (unsigned k = 0; k < n; k++) {
-        unsigned cuts = cuts_of(tree->surface, leaf, &parts[k]);
-        n_pieces += cuts * cuts;
+        unsigned cuts = cuts_of(tree->surface, leaf, &parts[k], 1u << (TREE_CUTS - 1));
+        for (unsigned i = 0; i < TREE_CUTS; i++) {
+            unsigned fewer = cuts < 1u << i ? cuts : 1u << i;
+            n_pieces[i] += fewer * fewer;
+        }
     }
-    tree->first_piece[leaf] = n_pieces;
 }
 
-bool surface_tree_allocate(struct surface_tree *tree, size_t most_bytes, struct error *error)
+/* Numbers the pieces for at most 4^n pieces of a part, and chooses the depth of the tree. Returns the bytes of pieces and
+ * boxes; SIZE_MAX if there are too many. */
+static size_t lay_out(struct surface_tree *tree, unsigned n)
 {
     size_t total = 0;
-    for (size_t leaf = 0; leaf <= tree->surface->n_leaves; leaf++) {
-        uint32_t n = tree->first_piece[leaf];
+    for (size_t leaf = 0; leaf < tree->surface->n_leaves; leaf++) {
         tree->first_piece[leaf] = (uint32_t)total;
-        total += n;
+        total += tree->n_pieces_of[leaf][n];
         if (total > UINT32_MAX)
-            return error_set(error, ERROR_SERVER, "the surface has too many parts to compare");
+            return SIZE_MAX;
     }
     tree->n_pieces = total;
+    tree->most_cuts = 1u << n;
+    tree->depth = tree->top_depth = 0;
     while (total >> tree->depth > PIECES_OF_NODE)
         tree->depth++;
     while (total >> tree->top_depth > PIECES_OF_SUBTREE)
         tree->top_depth++;
-    size_t bytes = total * sizeof *tree->pieces + ((size_t)2 << tree->depth) * sizeof *tree->boxes;
+    return total * sizeof *tree->pieces + ((size_t)2 << tree->depth) * sizeof *tree->boxes;
+}
+
+bool surface_tree_allocate(struct surface_tree *tree, size_t most_bytes, struct error *error)
+{
+    unsigned n = TREE_CUTS - 1;
+    size_t bytes = lay_out(tree, n);
+    while (n > 0 && bytes > most_bytes)
+        bytes = lay_out(tree, --n);
     if (bytes > most_bytes)
         return error_set(error, ERROR_SERVER,
                          "the surface's tree needs %zu MB, more than the %zu MB that a computation "
                          "may take",
                          bytes >> 20, most_bytes >> 20);
-    tree->pieces = calloc(total + 1, sizeof *tree->pieces);
+    tree->pieces = calloc(tree->n_pieces + 1, sizeof *tree->pieces);
     tree->boxes = calloc((size_t)2 << tree->depth, sizeof *tree->boxes);
     return (tree->pieces && tree->boxes) ||
            error_set(error, ERROR_SERVER, "no memory for a surface's tree");
@@ -213,7 +228,7 @@ void surface_tree_fill(struct surface_tree *tree, size_t leaf)
     struct tree_piece *to = tree->pieces + tree->first_piece[leaf];
     for (unsigned k = 0; k < n; k++) {
         const struct kept_part *part = &parts[k];
-        unsigned cuts = cuts_of(surface, leaf, part);
+        unsigned cuts = cuts_of(surface, leaf, part, tree->most_cuts);
         struct vec net[16];
         if (!part->is_rest)
             net_of_part(surface, leaf, part, net);

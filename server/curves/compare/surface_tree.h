@@ -23,9 +23,15 @@ struct tree_piece {
         height; /* its rectangle of the leaf; all of them are sums of powers of two */
 };
 
+/* A part of a leaf is cut into 1, 4, 16 or 64 pieces: at most 4^n of them for the index n of these. */
+enum { TREE_CUTS = 4 };
+
 struct surface_tree {
     const struct kept_surface *surface; /* outlives the tree */
-    uint32_t *first_piece;              /* [n_leaves + 1]; before allocate(): their numbers */
+    /* [n_leaves]: pieces of each leaf if a part has at most 4^n of them. */
+    uint32_t (*n_pieces_of)[TREE_CUTS];
+    uint32_t *first_piece; /* [n_leaves] */
+    unsigned most_cuts;    /* along each side of a part: 1, 2, 4 or 8 */
     struct tree_piece *pieces;
     size_t n_pieces;
     /* A complete binary tree: the children of node i are 2 i + 1 and 2 i + 2; the node j of depth d has the pieces from
@@ -39,7 +45,8 @@ bool surface_tree_init(struct surface_tree *tree, const struct kept_surface *sur
                        struct error *error);
 void surface_tree_finish(struct surface_tree *tree);
 void surface_tree_divide(struct surface_tree *tree, size_t leaf);
-/* False with ERROR_SERVER when pieces and boxes need more than `most_bytes`. */
+/* Where pieces and boxes would need more than `most_bytes`, parts are cut into fewer pieces, in which Newton's method may
+ * miss a solution. False with ERROR_SERVER when even one piece of each part needs more. */
 bool surface_tree_allocate(struct surface_tree *tree, size_t most_bytes, struct error *error);
 void surface_tree_fill(struct surface_tree *tree, size_t leaf);
 /* Returns the number of subtrees. */
