@@ -201,6 +201,8 @@ static void defaults_are_the_same_both_ways(void **state)
     assert_int_equal(sheen_stats_defaults().size, sizeof(struct sheen_stats));
     assert_int_equal(sheen_breaks_defaults().size, sizeof(struct sheen_breaks));
     assert_int_equal(sheen_break_limits_defaults().size, sizeof(struct sheen_break_limits));
+    assert_int_equal(sheen_compare_options_defaults().size, sizeof(struct sheen_compare_options));
+    assert_int_equal(sheen_comparison_defaults().size, sizeof(struct sheen_comparison));
     assert_int_equal(sheen_server_defaults().size, sizeof(struct sheen_server));
     assert_int_equal(sheen_model_info_defaults().size, sizeof(struct sheen_model_info));
     /* In the struct of an older program nothing beyond its size is written. */
@@ -236,6 +238,8 @@ static const struct {
     ADDED(sheen_stats, size, threads, 784),
     ADDED(sheen_break_limits, size, curvature_percent, 32),
     ADDED(sheen_breaks, size, server, 3240),
+    ADDED(sheen_compare_options, size, samples, 88),
+    ADDED(sheen_comparison, size, server, 4952),
     /* Structs without `size` never change: each has one row. */
     ADDED(sheen_error, status, text, 644),
     ADDED(sheen_progress, report, context, 16),
@@ -253,6 +257,9 @@ static const struct {
     ADDED(sheen_break_worst, value, uv, 48),
     ADDED(sheen_break_edge, kind, worst, 352),
     ADDED(sheen_break_vertex, face, position, 64),
+    ADDED(sheen_compared_place, face, position, 48),
+    ADDED(sheen_compared_measure, is_known, area_out, 144),
+    ADDED(sheen_compared_side, samples, measures, 816),
 };
 
 static void members_stay_where_they_are(void **state)
