@@ -145,6 +145,24 @@ static enum sheen_status connect_and_upload(struct client *client, const struct 
     return status;
 }
 
+enum sheen_status client_add_model(struct client *client, const char *path,
+                                   uint8_t id[SHEEN_ID_BYTES])
+{
+    uint8_t *bytes = NULL;
+    size_t n_bytes = 0;
+    if (is_at_server(path))
+        return sheen_find_model(client->session, path + strlen(AT_SERVER), &client->report, id,
+                                &client->error);
+    enum sheen_status status =
+        sheen_read_file(SHEEN_FILE_MODEL, path, &bytes, &n_bytes, &client->error);
+    if (!status)
+        status = identify(client, bytes, n_bytes, id);
+    if (!status)
+        status = upload(client, SHEEN_FILE_MODEL, path, bytes, n_bytes, id);
+    free(bytes);
+    return status;
+}
+
 enum sheen_status client_init(struct client *client, const struct options *options)
 {
     *client = (struct client){.resume = {.limit_ms = options->reconnect_s * 1000}};

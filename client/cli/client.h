@@ -26,6 +26,11 @@ struct client {
  * both cases. */
 enum sheen_status client_init(struct client *client, const struct options *options);
 
+/* Uploads another model file, or finds one of the server's, and writes its id; it has no --weld. Call it again after
+ * client_resume(). */
+enum sheen_status client_add_model(struct client *client, const char *path,
+                                   uint8_t id[SHEEN_ID_BYTES]);
+
 /* Call it after a failure `*status`. If the reason is that the server at options->server was lost,
  * tries for options->reconnect_s seconds to connect again and to upload the model, and prints one
  * line unless --quiet. True on success: *status is then SHEEN_OK, and the caller must upload images

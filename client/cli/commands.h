@@ -13,9 +13,10 @@ extern const struct command COMMAND_PATTERNS;
 extern const struct command COMMAND_LEVELS;
 extern const struct command COMMAND_PICK;
 extern const struct command COMMAND_BREAKS;
+extern const struct command COMMAND_COMPARE;
 
 /* All commands, in the order in which they are listed. */
-#define N_COMMANDS 9
+#define N_COMMANDS 10
 extern const struct command *const COMMANDS[N_COMMANDS];
 
 #endif

@@ -11,10 +11,10 @@
 static void help_shows_every_option(void **state)
 {
     (void)state;
-    static const struct command *const commands[] = {&COMMAND_RENDER, &COMMAND_STREAM,
-                                                     &COMMAND_INFO,   &COMMAND_STATS,
-                                                     &COMMAND_LEVELS, &COMMAND_BREAKS};
-    for (size_t i = 0; i < 6; i++) {
+    static const struct command *const commands[] = {
+        &COMMAND_RENDER, &COMMAND_STREAM, &COMMAND_INFO,   &COMMAND_STATS,
+        &COMMAND_LEVELS, &COMMAND_BREAKS, &COMMAND_COMPARE};
+    for (size_t i = 0; i < 7; i++) {
         char *text = NULL;
         size_t size = 0;
         FILE *out = open_memstream(&text, &size);
@@ -49,9 +49,10 @@ static void help_has_the_commands_exit_codes(void **state)
     static const struct {
         const struct command *command;
         const char *codes; /* in the order of the help text */
-    } cases[] = {{&COMMAND_RENDER, "02345"}, {&COMMAND_STREAM, "02345"}, {&COMMAND_INFO, "02345"},
-                 {&COMMAND_LEVELS, "02345"}, {&COMMAND_STATS, "02345"},  {&COMMAND_LIGHTS, "023"},
-                 {&COMMAND_PATTERNS, "023"}, {&COMMAND_BREAKS, "012345"}};
+    } cases[] = {
+        {&COMMAND_RENDER, "02345"}, {&COMMAND_STREAM, "02345"},  {&COMMAND_INFO, "02345"},
+        {&COMMAND_LEVELS, "02345"}, {&COMMAND_STATS, "02345"},   {&COMMAND_LIGHTS, "023"},
+        {&COMMAND_PATTERNS, "023"}, {&COMMAND_BREAKS, "012345"}, {&COMMAND_COMPARE, "012345"}};
     for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++) {
         char found[11] = "";
         const char *codes = strstr(help_of(cases[i].command), "Exit codes: ");

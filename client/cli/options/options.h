@@ -11,6 +11,7 @@
 #include <stdio.h>
 
 #include "client/cli/options/frame_names.h"
+#include "client/cli/options/comparison_items.h"
 #include "client/lib/sheen.h"
 #include "protocol/ranges.h"
 
@@ -68,6 +69,9 @@ struct options {
     uint32_t samples;                       /* pick: of a section, 2 to 4096 */
     struct sheen_break_limits break_limits; /* breaks */
     const char *junit;                      /* file of a JUnit report; NULL: none */
+    const char *markdown;                   /* compare: file of a summary; NULL: none */
+    struct comparison_limit compare_limits[COMPARISON_ITEMS];
+    bool align; /* compare */
 };
 
 /* One option. `apply` gets the value (NULL for a flag) and returns false with the reason in `why`.

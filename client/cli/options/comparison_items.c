@@ -1,0 +1,35 @@
+#include "client/cli/options/comparison_items.h"
+
+#include <string.h>
+
+static const struct {
+    const char *key;
+    enum range_name range;
+} ITEMS[COMPARISON_ITEMS] = {
+    [SHEEN_COMPARE_DISTANCE] = {"distance", RANGE_COMPARE_DISTANCE},
+    [SHEEN_COMPARE_NORMAL] = {"normal_deg", RANGE_COMPARE_NORMAL},
+    [SHEEN_COMPARE_LINES] = {"lines", RANGE_COMPARE_LINES},
+    [SHEEN_COMPARE_LINE_LENGTH] = {"line_length", RANGE_COMPARE_LENGTH},
+    [SHEEN_COMPARE_CURVATURE] = {"curvature", RANGE_COMPARE_CURVATURE},
+    [COMPARISON_MISSING] = {"uncovered_area", RANGE_COMPARE_LENGTH},
+    [COMPARISON_ROTATION] = {"rotation_deg", RANGE_COMPARE_NORMAL},
+};
+
+enum range_name comparison_range(enum comparison_item item)
+{
+    return ITEMS[item].range;
+}
+
+const char *comparison_key(enum comparison_item item)
+{
+    return ITEMS[item].key;
+}
+
+enum comparison_item comparison_item_of(const char *key, size_t n)
+{
+    int item = 0;
+    while (item < COMPARISON_ITEMS &&
+           (strlen(ITEMS[item].key) != n || memcmp(ITEMS[item].key, key, n) != 0))
+        item++;
+    return (enum comparison_item)item;
+}

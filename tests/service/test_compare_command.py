@@ -1,0 +1,170 @@
+"""sheen compare: exit codes, limits, folders, JSON by its schema, JUnit and markdown, with files of strange names. The
+numbers themselves are judged by tests/oracle/test_comparison.cpp."""
+import hashlib
+import json
+import os
+import subprocess
+import tempfile
+import unittest
+import xml.etree.ElementTree as xml
+
+import schema
+from daemon import CUBE, MODELS, SHEEN
+
+SCHEMAS = os.path.join(MODELS, "..", "..", "client", "schema")
+LIFT = 0.01
+MOST = LIFT * 4 / 9  # by which a regular vertex takes the surface with it
+FEW = ("--samples", "20000")
+
+
+def sheet(lift=0.0, without=None):
+    """A flat sheet of 6 by 6 faces, whose middle vertex is lifted, without one face."""
+    lines = [f"v {x} {y} {lift if (x, y) == (3, 3) else 0}" for y in range(7) for x in range(7)]
+    lines += [f"f {7 * y + x + 1} {7 * y + x + 2} {7 * y + x + 9} {7 * y + x + 8}"
+              for y in range(6) for x in range(6) if (x, y) != without]
+    return "\n".join(lines) + "\n"
+
+
+@unittest.skipUnless(os.path.exists(SHEEN), "no client in this build")
+class CompareCommand(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.folder = folder.name
+        cls.flat = cls.write("flat.obj", sheet())
+        cls.lifted = cls.write("lifted.obj", sheet(LIFT))
+        with open(os.path.join(SCHEMAS, "compare-1.json"), encoding="utf-8") as file:
+            cls.schema = json.load(file)
+
+    @classmethod
+    def write(cls, name, text):
+        path = os.path.join(cls.folder, name)
+        os.makedirs(os.path.dirname(path), exist_ok=True)
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(text)
+        return path
+
+    def compare(self, *arguments, code):
+        done = subprocess.run([SHEEN, "compare", *arguments, *FEW], capture_output=True, text=True, timeout=120)
+        self.assertEqual(done.returncode, code, done.stderr)
+        return done
+
+    def json(self, *arguments, code):
+        answer = json.loads(self.compare(*arguments, "--json", code=code).stdout)
+        schema.check(answer, self.schema)
+        self.assertEqual(answer["verdict"], "differs" if code else "same")
+        return answer
+
+    def test_exit_codes(self):
+        self.compare(self.flat, self.flat, code=0)
+        self.compare(self.flat, self.lifted, code=1)
+        missing = os.path.join(self.folder, "missing.obj")
+        self.assertEqual(self.compare(self.flat, missing, code=3).stdout, "")
+        self.compare(missing, self.flat, code=3)
+        bad = self.write("bad.obj", "v 0 0 zero\n")
+        self.assertEqual(self.compare(self.flat, bad, "--json", code=3).stdout, "")
+        self.compare(self.flat, self.flat, "--server", "unix:/nowhere", code=4)
+        self.assertIn("NEW, is missing", self.compare(self.flat, code=2).stderr)
+        self.assertIn("two models or two folders", self.compare(self.flat, self.folder, code=2).stderr)
+
+    def test_limits(self):
+        loose = ("--limit", "normal_deg=off", "--limit", "lines=off")
+        for factor, code in ((0.999, 1), (1.001, 0)):
+            self.compare(self.flat, self.lifted, *loose, "--limit", f"distance={MOST * factor}", code=code)
+        # The lifted part is 4 x 4 faces of 36, most of it by more than a tenth of the limit.
+        for share, code in (("60%", 0), ("1%", 1)):
+            self.compare(self.flat, self.lifted, *loose, "--limit", f"distance={MOST / 100}@{share}", code=code)
+        for wrong in ("distance", "distance=", "distance=x", "distance=0", "speed=1", "distance=1@2", "distance=1@101%",
+                      "lines=off@1%", "normal_deg=181", "distance=nan"):
+            self.assertIn("--limit", self.compare(self.flat, self.flat, "--limit", wrong, code=2).stderr, wrong)
+
+    def test_json(self):
+        answer = self.json(self.flat, self.lifted, "--limit", "curvature=0.1", code=1)
+        pair, = answer["pairs"]
+        for side in ("old", "new"):
+            with open(pair[side]["file"], "rb") as file:
+                self.assertEqual(pair[side]["sha256"], hashlib.sha256(file.read()).hexdigest())
+            distance = pair[side + "_samples"]["distance"]
+            self.assertAlmostEqual(distance["worst"], MOST, delta=1e-5)
+            self.assertAlmostEqual(distance["old"]["position"][0], 3, delta=0.01)
+            self.assertAlmostEqual(distance["new"]["position"][2], MOST, delta=1e-5)
+            self.assertIsNotNone(pair[side + "_samples"]["curvature"])
+        self.assertTrue(pair["measures"]["distance"]["default"] and pair["measures"]["distance"]["out"])
+        self.assertAlmostEqual(pair["measures"]["distance"]["limit"], 1e-5 * pair["diagonal"], places=12)
+        self.assertFalse(pair["measures"]["curvature"]["default"])
+        self.assertFalse(pair["measures"]["uncovered_area"]["out"])
+        same, = self.json(self.flat, self.flat, code=0)["pairs"]
+        self.assertEqual([same["measures"][name]["worst"] for name in ("distance", "normal_deg", "lines")], [0, 0, 0])
+        self.assertIsNone(same["measures"]["curvature"]["worst"])
+
+    def test_a_missing_face(self):
+        opened = self.write("open.obj", sheet(without=(2, 2)))
+        pair, = self.json(self.flat, opened, code=1)["pairs"]
+        self.assertTrue(pair["measures"]["uncovered_area"]["out"])
+        self.assertGreater(pair["old_samples"]["uncovered_area"], 0.5)
+        self.assertEqual(pair["new_samples"]["uncovered_area"], 0)
+        x, y, _ = pair["old_samples"]["uncovered_at"]["position"]
+        self.assertTrue(2 < x < 3 and 2 < y < 3)
+
+    def test_winding_is_no_difference(self):
+        lines = [" ".join([line.split()[0], *reversed(line.split()[1:])]) if line.startswith("f") else line
+                 for line in CUBE.decode().splitlines()]
+        old, new = self.write("cube.obj", CUBE.decode()), self.write("turned.obj", "\n".join(lines) + "\n")
+        done = self.compare(old, new, code=0)
+        self.assertEqual(done.stdout.count("notice: 100 % of the area is wound the other way around"), 1)
+
+    def test_align(self):
+        with open(os.path.join(MODELS, "body.obj"), encoding="utf-8") as file:
+            body = file.read().splitlines()
+        moved = ["v %s %s %r" % (*line.split()[1:3], float(line.split()[3]) + 0.02) if line.startswith("v ") else line
+                 for line in body]
+        old, new = self.write("body.obj", "\n".join(body)), self.write("moved.obj", "\n".join(moved))
+        self.compare(old, new, code=1)
+        pair, = self.json(old, new, "--align", code=0)["pairs"]
+        self.assertAlmostEqual(pair["alignment"]["shift"][2], -0.02, places=6)
+        self.assertLess(pair["alignment"]["rotation_deg"], 1e-4)
+
+    def test_folders(self):
+        strange = 'a<b>&"c"|\'\x01\x1b[31m.obj'
+        for name, old, new in (("same.obj", sheet(), sheet()), ("bent.obj", sheet(), sheet(LIFT)),
+                               (strange, sheet(), sheet(LIFT)), ("gone.obj", sheet(), None),
+                               ("fresh.obj", None, sheet()), ("notes.txt", "no model", None)):
+            for folder, text in (("old", old), ("new", new)):
+                if text:
+                    self.write(os.path.join("pairs", folder, name), text)
+        old, new = (os.path.join(self.folder, "pairs", folder) for folder in ("old", "new"))
+        report, summary = os.path.join(self.folder, "junit.xml"), os.path.join(self.folder, "summary.md")
+        answer = self.json(old, new, "--junit", report, "--markdown", summary, code=1)
+        self.assertEqual({pair["name"]: pair["verdict"] for pair in answer["pairs"]},
+                         {"same.obj": "same", "bent.obj": "differs", strange: "differs", "gone.obj": "deleted",
+                          "fresh.obj": "added"})
+        self.junit(report, strange)
+        with open(summary, encoding="utf-8") as file:
+            text = file.read()
+        self.assertIn("1 same, 4 not", text)
+        self.assertIn("a&#60;b&#62;&#38;&#34;c&#34;&#124;'??&#91;31m.obj | differs |", text)
+        rows = [line for line in text.splitlines() if line.startswith("| ")]
+        self.assertEqual(len({row.count("|") for row in rows}), 1)
+        self.assertTrue(rows[-1].startswith("| same.obj"), "the worst come first")
+        self.compare(os.path.join(self.folder, "pairs"), os.path.join(self.folder, "pairs"), code=3)
+
+    def junit(self, report, strange):
+        """Valid XML, and names that XML cannot hold."""
+        with open(report, "rb") as file:
+            suites = xml.fromstring(file.read())
+        found = {suite.get("name"): suite for suite in suites}
+        self.assertEqual(set(found), {"same.obj", "bent.obj", "gone.obj", "fresh.obj",
+                                      strange.replace("\x01", "\ufffd").replace("\x1b", "\ufffd")})
+        self.assertEqual({name: suite.get("failures") for name, suite in found.items() if name[0] in "sgf"},
+                         {"same.obj": "0", "gone.obj": "1", "fresh.obj": "1"})
+        cases = [case for case in found["bent.obj"] if case.tag == "testcase"]
+        self.assertEqual([case.get("name") for case in cases], ["distance", "normal_deg", "lines", "uncovered_area"])
+        self.assertEqual([len(case) for case in cases][0], 1)
+        self.assertRegex(cases[0][0].get("message"), r"^distance 0\.0044.* units, limit .* at .*, face \d+, u ")
+        deleted = [case for case in found["gone.obj"] if case.tag == "testcase"]
+        self.assertIn("deleted", deleted[0][0].get("message"))
+
+
+if __name__ == "__main__":
+    unittest.main()
