@@ -64,8 +64,9 @@ room server/image "$common|protocol" 'pictures are data'
 room server/sandbox "$common|server/cage|server/cage/read|server/image" 'the worker programs see files alone'
 room server/scene "$common|protocol|server/cage|server/surface" 'a request is data'
 room server/curves "$common|server/scene|server/surface" 'numbers on surfaces: no cage, no device, no client'
+room server/curves/fields "$common|server/curves|server/scene|server/surface" 'lines as polynomials'
 for kind in breaks compare lines; do
-    room server/curves/$kind "$common|protocol|server/curves|server/scene|server/surface" 'no computation knows another'
+    room server/curves/$kind "$common|protocol|server/curves|server/curves/fields|server/scene|server/surface" 'no computation knows another'
 done
 room server/render "$common|protocol|server/image|server/scene|server/surface" 'what every device needs, so no GL'
 room server/render/gl/context "$common|server/image" 'a context knows nothing of what is drawn in it'
@@ -90,7 +91,7 @@ room server/output "$common|protocol|server/image|server/render|server/scene|ser
     'an encoder knows pictures, no client'
 room server/assets "$common|protocol|server/cage|server/net|server/render|server/scene|server/surface|server/surface/subdivision|server/threads" \
     'models and images serve every frame, and know none'
-room server/frame "$common|protocol|server/assets|server/curves|server/curves/breaks|server/curves/compare|server/curves/lines|server/output|server/scene" \
+room server/frame "$common|protocol|server/assets|server/curves|server/curves/breaks|server/curves/compare|server/curves/fields|server/curves/lines|server/output|server/scene" \
     'a frame tells its session by events (request.h), so it includes none'
 room server/session "$common|protocol|server/assets|server/frame|server/net|server/output|server/threads" \
     'a session is one client'"'"'s messages; the main service hands it what it needs'

@@ -1,0 +1,44 @@
+/* All lines that are traced together, and their signs at places of the surface. Plain data of the caller; any thread. */
+#ifndef SHEEN_FIELDS_LINE_SET_H
+#define SHEEN_FIELDS_LINE_SET_H
+
+#include <stdint.h>
+
+#include "server/curves/fields/field.h"
+
+enum { LINE_SET_MOST_FIELDS = 33, LINE_SET_MOST_LINES = 1024 };
+enum { LINE_SET_WORDS = LINE_SET_MOST_LINES / 64 };
+
+/* Lines are numbered field by field: those of field f from first_line[f] to first_line[f + 1] - 1. */
+struct line_set {
+    uint32_t n_fields, n_lines;
+    struct line_field field[LINE_SET_MOST_FIELDS];
+    uint32_t first_line[LINE_SET_MOST_FIELDS + 1];
+    struct field_line line[LINE_SET_MOST_LINES];
+};
+
+/* A bit for each line: 1 where F is negative. */
+struct line_signs {
+    uint64_t word[LINE_SET_WORDS];
+};
+
+static inline bool line_sign(const struct line_signs *signs, uint32_t line)
+{
+    return signs->word[line / 64] >> (line % 64) & 1;
+}
+
+static inline void line_sign_flip(struct line_signs *signs, uint32_t line)
+{
+    signs->word[line / 64] ^= (uint64_t)1 << (line % 64);
+}
+
+/* F counts as positive if it is not below -LINE_NOISE times its bound (field_bound()). So where F is 0 along a whole border
+ * of patches, as in a model's plane of symmetry, both sides agree on its sign, and the line runs in one of them. The
+ * bound is that of products of largest values and so far above F; what F rounds by is below this share of it. */
+#define LINE_NOISE 2e-16
+
+/* The signs at the surface point x (world) with the unit normal n. */
+void line_set_signs(const struct line_set *set, struct vec x, struct vec n,
+                    struct line_signs *signs);
+
+#endif
