@@ -1,0 +1,528 @@
+/* Lines as curves: against closed forms, against a grid that counts them, and against a second evaluation of every
+ * point. */
+#include <math.h>
+#include <string.h>
+
+#include "tests/unit/cage_tables.h"
+#include "tests/unit/surface_curves.h"
+
+#include "server/surface/evaluate.h"
+
+static const char *const MODELS = "tests/models/";
+
+static uint64_t random_state;
+
+static double random_number(void)
+{
+    random_state = random_state * 6364136223846793005u + 1442695040888963407u;
+    return (double)(random_state >> 11) * 0x1p-53;
+}
+
+static double random_signed(void)
+{
+    return 2 * random_number() - 1;
+}
+
+static void build_model(const char *name, struct limit_tables *tables)
+{
+    char path[100];
+    snprintf(path, sizeof path, "%s%s.obj", MODELS, name);
+    build_file(path, tables);
+}
+
+/* Families and lights in turn, at random places around a model of about unit size. */
+static void random_map(unsigned kind, double size, struct line_map *map)
+{
+    static const enum line_family FAMILIES[] = {LINES_REFLECTION, LINES_HIGHLIGHT, LINES_ISOPHOTE,
+                                                LINES_ZEBRA, LINES_ENVIRONMENT};
+    struct lines lines = {.family = FAMILIES[kind % 5]};
+    struct light light = {.kind = (enum light_kind)(kind / 5 % 4)};
+    lines.eye_kind = kind & 1 ? LINE_EYE_POINT : LINE_EYE_DIRECTION;
+    lines.has_direction = lines.family != LINES_ISOPHOTE || (kind & 2);
+    for (int k = 0; k < 3; k++) {
+        lines.direction[k] = random_signed();
+        lines.eye[k] = 3 * size * random_signed();
+        light.centre[k] = 0.3 * size * random_signed();
+        light.u[k] = size * random_signed();
+        light.v[k] = size * random_signed();
+    }
+    lines.eye[2] += 4 * size;
+    light.centre[2] += light.kind == LIGHT_RECTANGLE || light.kind == LIGHT_PLANE ? 3 * size : 0;
+    light.one_sided = kind % 3 == 0 && light.kind < LIGHT_TUNNEL;
+    if (light.kind == LIGHT_TUNNEL)
+        for (int k = 0; k < 3; k++)
+            light.u[k] *= 4;
+    if (light.kind == LIGHT_RECTANGLE)
+        for (int k = 0; k < 3; k++)
+            light.u[k] *= 3, light.v[k] *= 3;
+    light.pattern.rotation_deg = kind % 7 == 3 ? 90 : 0;
+    line_map_init(map, &lines, &light);
+}
+
+/* F of nets, of jets and of intervals is the same, of every family and light. */
+static void fields_agree_with_each_other(void **state)
+{
+    (void)state;
+    static double memory[4 * FIELD_ROOM];
+    unsigned known = 0, lines = 0;
+    random_state = 7;
+    for (unsigned kind = 0; kind < 140; kind++) {
+        struct vec bezier_points[4][4];
+        struct limit_tables tables;
+        for (int k = 0; k < 16; k++)
+            bezier_points[k / 4][k % 4] =
+                (struct vec){k % 4 / 3.0 + 0.1 * random_signed(),
+                             k / 4 / 3.0 + 0.1 * random_signed(), 0.2 * random_signed()};
+        for (int k = 0; kind % 2 && k < 16; k++) { /* small and gentle, so that intervals decide */
+            struct vec *p = &bezier_points[k / 4][k % 4];
+            *p = (struct vec){0.02 * (p->x + 0.2 * p->z), 0.02 * p->y, 0.0002 * p->z};
+        }
+        build_bezier(bezier_points, &tables);
+        struct line_map map;
+        random_map(kind, 1, &map);
+        struct line_field field;
+        struct field_line line;
+        double place = 0.1 + 0.8 * random_number();
+        if (line_field_init(&field, &map, place) && field_line_init(&field, place, &line)) {
+            struct limit_patch patch;
+            struct bezier bezier;
+            struct net_room room = {memory, 0};
+            struct bezier_nets surface;
+            struct bezier_box box;
+            struct field_nets nets;
+            struct field_box field_box;
+            limit_patch_of_level(&patch, &tables, &tables.nodes[BEZIER_FACE], 0, 0.5, 0.5);
+            bezier_of_patch(&bezier, &tables, &patch);
+            bezier_nets(&bezier, &room, &surface);
+            bezier_box_of(&surface, &box);
+            field_make_nets(&field, &room, bezier.origin, &surface, &nets);
+            field_make_box(&field, bezier.origin, &box, &field_box);
+            int sign = field_box_sign(&field_box, &line);
+            known += sign != 0;
+            double ratio = 0;
+            for (int i = 0; i < 30; i++) {
+                double u = random_number(), v = random_number(), jet[3], sum = 0;
+                struct bezier_jet at;
+                bezier_jet_at(&bezier, u, v, &at);
+                field_jet(&field, &line, bezier.origin, &at, jet);
+                for (int k = 0; k < nets.n_terms; k++)
+                    sum += line.w[k] * net_value(&nets.g[k], u, v);
+                assert_true(sign == 0 || sign * jet[0] > 0);
+                assert_true((sum > 0) == (jet[0] > 0) ||
+                            fabs(sum) < 1e-13 * field_bound(&nets, &line));
+                /* The nets' normal is divided by its largest coefficient, so that F has a constant factor. */
+                ratio = i == 0 ? jet[0] / sum : ratio;
+                if (fabs(sum) > 1e-9 * field_bound(&nets, &line))
+                    assert_true(fabs(jet[0] / sum / ratio - 1) < 1e-4);
+            }
+            lines++;
+        }
+        limit_tables_finish(&tables);
+    }
+    print_message("%u lines, %u known by intervals\n", lines, known);
+    assert_true(lines > 100 && known > 5);
+}
+
+/* The change of F by finite differences. */
+static void jets_have_the_derivatives(void **state)
+{
+    (void)state;
+    struct limit_tables tables;
+    build_model("body", &tables);
+    random_state = 9;
+    for (unsigned kind = 0; kind < 140; kind++) {
+        struct line_map map;
+        struct line_field field;
+        struct field_line line;
+        random_map(kind, 2, &map);
+        if (!line_field_init(&field, &map, 0.4) || !field_line_init(&field, 0.4, &line))
+            continue;
+        struct limit_patch patch;
+        struct bezier bezier;
+        struct limit_place place = {.node = kind % (uint32_t)tables.n_faces, .a = 0.3, .b = 0.6};
+        assert_true(limit_patch_find(&tables, &place, &patch));
+        bezier_of_patch(&bezier, &tables, &patch);
+        double jet[5][3], h = 1e-4;
+        const double at[5][2] = {
+            {0.4, 0.7}, {0.4 + h, 0.7}, {0.4 - h, 0.7}, {0.4, 0.7 + h}, {0.4, 0.7 - h}};
+        for (int k = 0; k < 5; k++) {
+            struct bezier_jet surface;
+            bezier_jet_at(&bezier, at[k][0], at[k][1], &surface);
+            field_jet(&field, &line, bezier.origin, &surface, jet[k]);
+        }
+        double size = fmax(fmax(fabs(jet[0][0]), fabs(jet[0][1])), fabs(jet[0][2]));
+        assert_true(fabs((jet[1][0] - jet[2][0]) / (2 * h) - jet[0][1]) < 1e-5 * size);
+        assert_true(fabs((jet[3][0] - jet[4][0]) / (2 * h) - jet[0][2]) < 1e-5 * size);
+    }
+    limit_tables_finish(&tables);
+}
+
+/* On a plane mirror the lines of a plane light are straight, whatever the eye. */
+static void lines_on_a_plane_mirror_are_straight(void **state)
+{
+    (void)state;
+    struct limit_tables tables;
+    build_model("plane", &tables);
+    double size = tables.box_max[0] - tables.box_min[0];
+    const struct lines lines = {.eye_kind = LINE_EYE_POINT, .eye = {0.3 * size, -1.1 * size, size}};
+    const struct light light = {.kind = LIGHT_PLANE,
+                                .centre = {0.2, 0.1, 2 * size},
+                                .u = {size, 0.3 * size, 0.1 * size},
+                                .v = {0, size, 0.2}};
+    struct line_map map;
+    struct line_set *set = calloc(1, sizeof *set);
+    line_map_init(&map, &lines, &light);
+    for (int i = 0; i < 21; i++)
+        set_add(set, &map, -1 + 0.15 * i);
+    struct surface_lines *traced = trace_set(&tables, set, 1e-3 * size);
+    struct surface_lines_result result = surface_lines_result(traced);
+    assert_true(result.curves->n_curves >= 10);
+    assert_int_equal(result.n_marks, 0);
+    for (size_t c = 0; c < result.curves->n_curves; c++) {
+        const struct curve *curve = &result.curves->curve[c];
+        const struct traced_point *p = result.curves->point + curve->first;
+        struct vec along = vec_unit(vec_sub(p[curve->n - 1].p, p[0].p));
+        assert_false(curve->closed);
+        for (size_t k = 0; k < curve->n; k++) {
+            struct vec off = vec_cross(along, vec_sub(p[k].p, p[0].p));
+            assert_true(vec_length(off) < 1e-9 * size);
+        }
+    }
+    computation_destroy(surface_lines_computation(traced));
+    limit_tables_finish(&tables);
+    free(set);
+}
+
+/* A parabolic cylinder z = -x^2/2, which one patch is exactly, seen straight from above: a place on a plane light depends on x
+ * alone. The ray at x has slope 2 x / (1 - x^2) against the vertical. */
+static long double parabola_place(long double x, long double height)
+{
+    long double z = -x * x / 2, across = 2 * x, up = 1 - x * x;
+    return x + across / up * (height - z);
+}
+
+static void lines_on_a_parabolic_cylinder_are_where_they_belong(void **state)
+{
+    (void)state;
+    struct vec bezier[4][4];
+    struct limit_tables tables;
+    for (int j = 0; j < 4; j++) {
+        for (int i = 0; i < 4; i++) {
+            /* x from -1/2 to 1/2; -x^2/2 in Bernstein form, raised from degree 2. */
+            static const double z[4] = {-0.125, 0.125 / 3, 0.125 / 3, -0.125};
+            bezier[j][i] = (struct vec){i / 3.0 - 0.5, j / 3.0, z[i]};
+        }
+    }
+    build_bezier(bezier, &tables);
+    const struct lines lines = {.eye_kind = LINE_EYE_DIRECTION, .eye = {0, 0, -1}};
+    const struct light light = {
+        .kind = LIGHT_PLANE, .centre = {0, 0, 3}, .u = {2, 0, 0}, .v = {0, 2, 0}};
+    struct line_map map;
+    struct line_set *set = calloc(1, sizeof *set);
+    line_map_init(&map, &lines, &light);
+    for (int i = 0; i < 9; i++)
+        set_add(set, &map, 0.13 + 0.1 * i);
+    struct surface_lines *traced = trace_set(&tables, set, 1e-3);
+    struct surface_lines_result result = surface_lines_result(traced);
+    assert_int_equal(result.curves->n_curves, 9);
+    for (size_t c = 0; c < 9; c++) {
+        const struct curve *curve = &result.curves->curve[c];
+        long double low = -0.5L, high = 0.5L;
+        long double wanted = 2 * ((long double)set->line[curve->line].place - 0.5L);
+        for (int i = 0; i < 100; i++) {
+            long double middle = (low + high) / 2;
+            *(parabola_place(middle, 3) < wanted ? &low : &high) = middle;
+        }
+        for (size_t k = 0; k < curve->n; k++) {
+            /* The stored points are single: x and z are within 1e-7 of the parabola. */
+            double x = result.curves->point[curve->first + k].p.x;
+            assert_true(fabsl((long double)x - low) < 3e-7L);
+        }
+    }
+    computation_destroy(surface_lines_computation(traced));
+    limit_tables_finish(&tables);
+    free(set);
+}
+
+/* The sign of place - wanted on a grid over a patch, and from that the number of connected components of the line: cells
+ * with different signs at their corners, joined across shared edges whose ends differ. */
+enum { GRID = 300 };
+
+static uint32_t root_of(uint32_t *parent, uint32_t i)
+{
+    while (parent[i] != i)
+        i = parent[i] = parent[parent[i]];
+    return i;
+}
+
+/* Places of closed lights are compared the shorter way around. */
+static bool crosses(double a, double b, double wanted)
+{
+    a -= wanted + round(a - wanted);
+    b -= wanted + round(b - wanted);
+    return (a > 0) != (b > 0) && fabs(a - b) < 0.5;
+}
+
+static unsigned count_on_grid(const double *place, double wanted)
+{
+    static uint32_t parent[GRID * GRID];
+    static bool crossed[GRID * GRID];
+    const int row = GRID + 1;
+    unsigned n = 0;
+    for (int j = 0; j < GRID; j++) {
+        for (int i = 0; i < GRID; i++) {
+            uint32_t self = (uint32_t)(j * GRID + i);
+            const double *at = place + j * row + i;
+            bool left = crosses(at[0], at[row], wanted), below = crosses(at[0], at[1], wanted);
+            crossed[self] = left || below || crosses(at[1], at[row + 1], wanted) ||
+                            crosses(at[row], at[row + 1], wanted);
+            parent[self] = self;
+            if (i > 0 && left)
+                parent[root_of(parent, self)] = root_of(parent, self - 1);
+            if (j > 0 && below)
+                parent[root_of(parent, self)] = root_of(parent, self - GRID);
+        }
+    }
+    for (uint32_t k = 0; k < GRID * GRID; k++)
+        n += crossed[k] && parent[k] == k;
+    return n;
+}
+
+/* Wavy patches, on which lines close: as many curves as on the grid. */
+static void the_grid_shows_as_many_curves(void **state)
+{
+    (void)state;
+    static double place[(GRID + 1) * (GRID + 1)];
+    unsigned curves = 0, closed = 0;
+    random_state = 3;
+    for (int round = 0; round < 6; round++) {
+        struct vec bezier[4][4];
+        struct limit_tables tables;
+        for (int k = 0; k < 16; k++)
+            bezier[k / 4][k % 4] = (struct vec){k % 4 / 3.0, k / 4 / 3.0, 0.15 * random_signed()};
+        for (int k = 0; k < 4; k++) /* a dome, so that isophotes close */
+            bezier[1 + k / 2][1 + k % 2].z += 0.3;
+        build_bezier(bezier, &tables);
+        struct lines lines = {.family = round % 3 == 0 ? LINES_ISOPHOTE : LINES_REFLECTION,
+                              .eye_kind = LINE_EYE_POINT,
+                              .has_direction = true,
+                              .direction = {0.1, 0.2, 1},
+                              .eye = {0.4, -0.3, 40}};
+        struct light light = {.kind = round % 3 == 1 ? LIGHT_TUNNEL : LIGHT_SPHERE,
+                              .u = {round % 3 == 1 ? 50 : 0, 0, round % 3 == 1 ? 0 : 1},
+                              .v = {0.1, 1, 0}};
+        struct line_map map;
+        struct line_set *set = calloc(1, sizeof *set);
+        line_map_init(&map, &lines, &light);
+        for (int i = 0; i < 12; i++) {
+            double at = lines.family == LINES_ISOPHOTE ? 0.03 + 0.02 * i : 0.29 + 0.033 * i;
+            assert_true(set_add(set, &map, at));
+        }
+        for (int k = 0; k < (GRID + 1) * (GRID + 1); k++) {
+            struct limit_point at;
+            limit_evaluate(&tables, BEZIER_FACE, (double)(k % (GRID + 1)) / GRID,
+                           (double)(k / (GRID + 1)) / GRID, &at);
+            place[k] = line_position_at(&map, at.s, at.n).s;
+        }
+        struct surface_lines *traced = trace_set(&tables, set, 1e-3);
+        struct surface_lines_result result = surface_lines_result(traced);
+        assert_int_equal(result.n_marks, 0);
+        for (uint32_t i = 0; i < set->n_lines; i++) {
+            unsigned n = 0;
+            for (size_t c = 0; c < result.curves->n_curves; c++) {
+                n += result.curves->curve[c].line == i;
+                closed += result.curves->curve[c].line == i && result.curves->curve[c].closed;
+            }
+            assert_int_equal(n, count_on_grid(place, set->line[i].place));
+            curves += n;
+        }
+        computation_destroy(surface_lines_computation(traced));
+        limit_tables_finish(&tables);
+        free(set);
+    }
+    print_message("%u curves, %u closed\n", curves, closed);
+    assert_true(curves > 50 && closed > 1);
+}
+
+/* Whether a curve's end is where lines may end: at a border of the surface; at a mark; or where the ray ceases to meet the
+ * light, or the place on it jumps, as at the pole of an azimuth. */
+static bool may_end(const struct limit_tables *tables, const struct line_field *field,
+                    const struct field_line *line, const struct surface_lines_result *result,
+                    const struct traced_point *end, double tolerance)
+{
+    for (size_t k = 0; k < result->n_marks; k++)
+        if (vec_length(vec_sub(result->marks[k].at.p, end->p)) < 3 * tolerance)
+            return true;
+    const double out[4] = {end->v, 1 - end->u, 1 - end->v, end->u};
+    for (unsigned e = 0; e < 4; e++)
+        if (out[e] < 1e-9 &&
+            (tables->nodes[end->face].borders >> (4 * e) & 15) == LIMIT_BORDER_SHARP)
+            return true;
+    for (int k = 0; k < 32; k++) { /* the light ends nearby */
+        double angle = k * 0.2, step = 1e-5;
+        struct limit_point at;
+        double u = fmin(fmax(end->u + step * cos(angle), 0), 1);
+        double v = fmin(fmax(end->v + step * sin(angle), 0), 1);
+        if (!limit_evaluate(tables, end->face, u, v, &at))
+            continue;
+        if (!(fabs(field_residual(field, line, at.s, at.n)) < 0.05))
+            return true;
+    }
+    return false;
+}
+
+/* Around extraordinary vertices lines are joined within the tolerance. */
+static bool is_at_corner(const struct limit_tables *tables, const struct traced_point *point,
+                         double distance)
+{
+    struct limit_point at;
+    double u = point->u < 0.5 ? 0 : 1, v = point->v < 0.5 ? 0 : 1;
+    return limit_evaluate(tables, point->face, u, v, &at) &&
+           vec_length(vec_sub(at.s, point->p)) < distance;
+}
+
+/* Every point again by line_position(), on every family and light, and every end. Lines end nowhere else. */
+static void check_model(const char *name, unsigned first_kind, unsigned kinds)
+{
+    struct limit_tables tables;
+    size_t points = 0, loose = 0, wrong = 0;
+    build_model(name, &tables);
+    double size = 0;
+    for (int k = 0; k < 3; k++)
+        size = fmax(size, tables.box_max[k] - tables.box_min[k]);
+    for (unsigned kind = first_kind; kind < first_kind + kinds; kind++) {
+        struct line_map map;
+        struct line_set *set = calloc(1, sizeof *set);
+        const int n_lines = 8;
+        random_map(kind, size, &map);
+        for (int i = 0; i < n_lines; i++)
+            set_add(set, &map, (i + 0.37) / n_lines);
+        double tolerance = 1e-4 * size;
+        struct surface_lines *traced = trace_set(&tables, set, tolerance);
+        struct surface_lines_result result = surface_lines_result(traced);
+        for (size_t c = 0; c < result.curves->n_curves; c++) {
+            const struct curve *curve = &result.curves->curve[c];
+            const struct traced_point *p = result.curves->point + curve->first;
+            const struct line_field *field = &set->field[0];
+            for (uint32_t f = 0; f < set->n_fields && set->first_line[f] <= curve->line; f++)
+                field = &set->field[f];
+            for (size_t k = 0; k < curve->n; k++) {
+                struct limit_point at;
+                points++;
+                assert_true(limit_evaluate(&tables, p[k].face, p[k].u, p[k].v, &at));
+                /* On a seam of patches the other patch may be evaluated, which single precision stores otherwise. */
+                double off = vec_length(vec_sub(at.s, p[k].p)) / size;
+                assert_true(off < 1e-6);
+                bool is_end = !curve->closed && (k == 0 || k + 1 == curve->n);
+                /* Not at.n, which is turned by a rounded quaternion after it was computed. */
+                struct vec n = vec_unit(vec_cross(at.su, at.sv));
+                double residual = field_residual(field, &set->line[curve->line], at.s, n);
+                loose += !is_end && !is_at_corner(&tables, &p[k], 4 * tolerance) &&
+                         !(fabs(residual) < (off < 1e-12 ? 1e-9 : 1e-5) / n_lines);
+                wrong += is_end && !may_end(&tables, field, &set->line[curve->line], &result, &p[k],
+                                            tolerance);
+            }
+        }
+        computation_destroy(surface_lines_computation(traced));
+        free(set);
+    }
+    print_message("%s: %zu points, %zu loose, %zu wrong ends\n", name, points, loose, wrong);
+    assert_int_equal(wrong, 0);
+    assert_true(points > 1000);
+    /* Quads with several extraordinary vertices are split: their vertices lie within faces. */
+    assert_true(loose <= points / 100);
+    limit_tables_finish(&tables);
+}
+
+static void every_point_is_on_its_line(void **state)
+{
+    (void)state;
+    random_state = 11;
+    check_model("body", 0, 40);
+    check_model("sheet", 3, 20);
+    check_model("fender", 0, 6);
+}
+
+static void creases_and_ngons_are_joined(void **state)
+{
+    (void)state;
+    random_state = 5;
+    check_model("creases", 0, 10);
+    check_model("ngons", 0, 10);
+    check_model("chaikin", 5, 5);
+    check_model("nonmanifold", 0, 10);
+    check_model("pole", 0, 5);
+}
+
+/* Slices in the opposite order give the same bytes. */
+static void order_of_slices_has_no_effect(void **state)
+{
+    (void)state;
+    struct limit_tables tables;
+    struct line_map map;
+    struct line_set *set = calloc(1, sizeof *set);
+    struct error error = {0};
+    build_model("body", &tables);
+    random_state = 2;
+    random_map(10, 2, &map);
+    for (int i = 0; i < 6; i++)
+        set_add(set, &map, 0.1 + 0.13 * i);
+    struct surface_lines *forwards = trace_set(&tables, set, 1e-3);
+    struct surface_lines *backwards =
+        surface_lines_create(&tables, set, 1e-3, (size_t)1 << 30, &error);
+    struct computation *run = surface_lines_computation(backwards);
+    for (unsigned phase = 0; run->kind->stages[phase]; phase++) {
+        size_t n = 0;
+        assert_true(run->kind->begin(run, phase, &n, &error));
+        while (n > 0)
+            run->kind->slice(run, --n);
+    }
+    const struct curve_set *a = surface_lines_result(forwards).curves;
+    const struct curve_set *b = surface_lines_result(backwards).curves;
+    assert_true(a->n_points > 100);
+    assert_int_equal(a->n_points, b->n_points);
+    assert_int_equal(a->n_curves, b->n_curves);
+    for (size_t k = 0; k < a->n_points; k++)
+        assert_true(a->point[k].p.x == b->point[k].p.x && a->point[k].u == b->point[k].u);
+    computation_destroy(surface_lines_computation(forwards));
+    computation_destroy(run);
+    limit_tables_finish(&tables);
+    free(set);
+}
+
+static void memory_is_bounded(void **state)
+{
+    (void)state;
+    struct limit_tables tables;
+    struct line_map map;
+    struct line_set *set = calloc(1, sizeof *set);
+    struct error error = {0};
+    build_model("body", &tables);
+    random_state = 2;
+    random_map(10, 2, &map);
+    for (int i = 0; i < 6; i++)
+        set_add(set, &map, 0.1 + 0.13 * i);
+    struct surface_lines *lines = surface_lines_create(&tables, set, 1e-4, 100000, &error);
+    assert_non_null(lines);
+    assert_false(computation_run(surface_lines_computation(lines), &error));
+    assert_int_equal(error.kind, ERROR_SERVER);
+    computation_destroy(surface_lines_computation(lines));
+    limit_tables_finish(&tables);
+    free(set);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(fields_agree_with_each_other),
+        cmocka_unit_test(jets_have_the_derivatives),
+        cmocka_unit_test(lines_on_a_plane_mirror_are_straight),
+        cmocka_unit_test(lines_on_a_parabolic_cylinder_are_where_they_belong),
+        cmocka_unit_test(the_grid_shows_as_many_curves),
+        cmocka_unit_test(every_point_is_on_its_line),
+        cmocka_unit_test(creases_and_ngons_are_joined),
+        cmocka_unit_test(order_of_slices_has_no_effect),
+        cmocka_unit_test(memory_is_bounded),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
