@@ -173,7 +173,7 @@ static void lines_on_a_plane_mirror_are_straight(void **state)
     struct line_set *set = calloc(1, sizeof *set);
     line_map_init(&map, &lines, &light);
     for (int i = 0; i < 21; i++)
-        set_add(set, &map, -1 + 0.15 * i);
+        line_set_add(set, &map, 0, -1 + 0.15 * i);
     struct surface_lines *traced = trace_set(&tables, set, 1e-3 * size);
     struct surface_lines_result result = surface_lines_result(traced);
     assert_true(result.curves->n_curves >= 10);
@@ -221,7 +221,7 @@ static void lines_on_a_parabolic_cylinder_are_where_they_belong(void **state)
     struct line_set *set = calloc(1, sizeof *set);
     line_map_init(&map, &lines, &light);
     for (int i = 0; i < 9; i++)
-        set_add(set, &map, 0.13 + 0.1 * i);
+        line_set_add(set, &map, 0, 0.13 + 0.1 * i);
     struct surface_lines *traced = trace_set(&tables, set, 1e-3);
     struct surface_lines_result result = surface_lines_result(traced);
     assert_int_equal(result.curves->n_curves, 9);
@@ -316,7 +316,7 @@ static void the_grid_shows_as_many_curves(void **state)
         line_map_init(&map, &lines, &light);
         for (int i = 0; i < 12; i++) {
             double at = lines.family == LINES_ISOPHOTE ? 0.03 + 0.02 * i : 0.29 + 0.033 * i;
-            assert_true(set_add(set, &map, at));
+            assert_int_equal(line_set_add(set, &map, 0, at), LINE_ADDED);
         }
         for (int k = 0; k < (GRID + 1) * (GRID + 1); k++) {
             struct limit_point at;
@@ -396,16 +396,14 @@ static void check_model(const char *name, unsigned first_kind, unsigned kinds)
         const int n_lines = 8;
         random_map(kind, size, &map);
         for (int i = 0; i < n_lines; i++)
-            set_add(set, &map, (i + 0.37) / n_lines);
+            line_set_add(set, &map, 0, (i + 0.37) / n_lines);
         double tolerance = 1e-4 * size;
         struct surface_lines *traced = trace_set(&tables, set, tolerance);
         struct surface_lines_result result = surface_lines_result(traced);
         for (size_t c = 0; c < result.curves->n_curves; c++) {
             const struct curve *curve = &result.curves->curve[c];
             const struct traced_point *p = result.curves->point + curve->first;
-            const struct line_field *field = &set->field[0];
-            for (uint32_t f = 0; f < set->n_fields && set->first_line[f] <= curve->line; f++)
-                field = &set->field[f];
+            const struct line_field *field = line_set_field(set, curve->line);
             for (size_t k = 0; k < curve->n; k++) {
                 struct limit_point at;
                 points++;
@@ -466,7 +464,7 @@ static void order_of_slices_has_no_effect(void **state)
     random_state = 2;
     random_map(10, 2, &map);
     for (int i = 0; i < 6; i++)
-        set_add(set, &map, 0.1 + 0.13 * i);
+        line_set_add(set, &map, 0, 0.1 + 0.13 * i);
     struct surface_lines *forwards = trace_set(&tables, set, 1e-3);
     struct surface_lines *backwards =
         surface_lines_create(&tables, set, 1e-3, (size_t)1 << 30, &error);
@@ -501,7 +499,7 @@ static void memory_is_bounded(void **state)
     random_state = 2;
     random_map(10, 2, &map);
     for (int i = 0; i < 6; i++)
-        set_add(set, &map, 0.1 + 0.13 * i);
+        line_set_add(set, &map, 0, 0.1 + 0.13 * i);
     struct surface_lines *lines = surface_lines_create(&tables, set, 1e-4, 100000, &error);
     assert_non_null(lines);
     assert_false(computation_run(surface_lines_computation(lines), &error));

@@ -15,7 +15,22 @@ struct line_set {
     struct line_field field[LINE_SET_MOST_FIELDS];
     uint32_t first_line[LINE_SET_MOST_FIELDS + 1];
     struct field_line line[LINE_SET_MOST_LINES];
+    uint16_t light[LINE_SET_MOST_LINES]; /* of each line; what the caller calls it */
 };
+
+enum line_set_result {
+    LINE_ADDED,
+    LINE_NOT_THERE, /* the light has no such place */
+    LINE_NO_CURVE,  /* the lines are no polynomials (line_field_init()) */
+    LINE_SET_FULL,
+};
+/* Adds the line at `place` of a light. Lines of one light come one after the other. */
+enum line_set_result line_set_add(struct line_set *set, const struct line_map *map, uint16_t light,
+                                  double place);
+/* Adds the silhouette for the eye of `map`. */
+enum line_set_result line_set_add_silhouette(struct line_set *set, const struct line_map *map);
+/* The field of a line. */
+const struct line_field *line_set_field(const struct line_set *set, uint32_t line);
 
 /* A bit for each line: 1 where F is negative. */
 struct line_signs {

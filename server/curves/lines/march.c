@@ -22,6 +22,10 @@ static bool add_point(struct tracer *tracer, const struct traced_point *point)
 {
     struct traced *out = &tracer->out;
     void *array = out->point;
+    if (out->n_points >= tracer->most_points) {
+        tracer->is_over = true;
+        return false;
+    }
     if (!grow(&array, out->n_points, &out->room_points, sizeof *point))
         return false;
     out->point = array;
@@ -71,10 +75,7 @@ static struct traced_point point_of(const struct march *march, const double at[2
     struct traced_point point = {.p = vec_add(march->bezier->origin, surface->s[0])};
     trace_face_place(march->tracer->work.tables, place->node, place->x0 + place->width * at[0],
                      place->y0 + place->height * at[1], &point);
-    double largest =
-        fmax(fmax(fabs(surface->n[0].x), fabs(surface->n[0].y)), fabs(surface->n[0].z));
-    if (largest > 0)
-        point.n = vec_unit(vec_scale(surface->n[0], 1 / largest));
+    point.n = vec_unit(surface->n[0]);
     double steepest = fmax(fabs(jet[1]), fabs(jet[2]));
     if (steepest > 0)
         point.along = vec_unit(vec_mad(vec_scale(surface->s[1], jet[2] / steepest),
@@ -87,6 +88,11 @@ static void jet_at(const struct march *march, const double at[2], struct bezier_
                    double jet[3])
 {
     bezier_jet_at(march->bezier, at[0], at[1], surface);
+    /* F needs no unit length of the normal, but its powers must not overflow or vanish. */
+    struct vec n = surface->n[0];
+    double largest = fmax(fmax(fabs(n.x), fabs(n.y)), fabs(n.z));
+    for (int k = 0; k < 3 && largest > 0; k++)
+        surface->n[k] = vec_scale(surface->n[k], 1 / largest);
     field_jet(march->field, line_of(march), march->bezier->origin, surface, jet);
 }
 
@@ -167,6 +173,10 @@ static void turn_along(const struct over *over, struct traced_point *point)
 
 static void put(struct over *over, const struct traced_point *point, const double at[2])
 {
+    if (over->n >= over->march->tracer->most_points) {
+        over->march->tracer->is_over = over->failed = true;
+        return;
+    }
     if (over->n == over->room) {
         size_t room = over->room ? 2 * over->room : 16;
         struct traced_point *points = realloc(over->point, room * sizeof *points);
@@ -217,7 +227,8 @@ static void refine(struct over *over, struct traced_point a, const double from[2
 {
     double tolerance = over->march->tracer->tolerance;
     bool is_straight = sagitta(&a, &b) <= tolerance;
-    if (over->failed || depth == MOST_HALVINGS || (depth > 0 && is_straight)) {
+    if (over->failed || *over->march->tracer->cancelled || depth == MOST_HALVINGS ||
+        (depth > 0 && is_straight)) {
         put(over, &b, to);
         return;
     }

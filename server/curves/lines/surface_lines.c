@@ -169,7 +169,10 @@ static bool begin_faces(struct surface_lines *lines, size_t *n_slices, struct er
 
 static void slice_faces(struct surface_lines *lines, size_t slice)
 {
-    struct tracer tracer = {.tolerance = lines->tolerance};
+    size_t used = lines->bytes, room = lines->most_bytes > used ? lines->most_bytes - used : 0;
+    struct tracer tracer = {.tolerance = lines->tolerance,
+                            .most_points = room / sizeof(struct traced_point),
+                            .cancelled = &lines->base.cancelled};
     const struct border_roots borders = {&lines->vertices, lines->sign, lines->first, lines->root};
     size_t first = slice * FACES_OF_SLICE, last = first + FACES_OF_SLICE;
     if (!work_init(lines, &tracer.work)) {
@@ -180,7 +183,9 @@ static void slice_faces(struct surface_lines *lines, size_t slice)
         if (!lines->base.cancelled && !lines->is_over)
             trace_face(&tracer, (uint32_t)face, &borders);
     free(tracer.work.room.memory);
-    if (tracer.work.failed)
+    if (tracer.is_over)
+        lines->is_over = true;
+    else if (tracer.work.failed)
         lines->is_short = true;
     charge(lines, traced_bytes(&tracer.out));
     lines->traced[slice] = tracer.out;
@@ -315,7 +320,8 @@ struct computation *surface_lines_computation(struct surface_lines *lines)
 
 struct surface_lines_result surface_lines_result(const struct surface_lines *lines)
 {
-    return (struct surface_lines_result){.curves = &lines->curves,
+    return (struct surface_lines_result){.set = lines->set,
+                                         .curves = &lines->curves,
                                          .marks = lines->marks,
                                          .n_marks = lines->n_marks,
                                          .n_cells = lines->n_cells,

@@ -11,6 +11,7 @@ struct surface_lines;
 
 /* What was found. Owned by the computation. */
 struct surface_lines_result {
+    const struct line_set *set; /* what was asked for */
     const struct curve_set *curves;
     const struct traced_mark *marks; /* where arcs end or a line covers a part of the surface */
     size_t n_marks;

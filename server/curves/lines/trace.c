@@ -324,6 +324,14 @@ static bool is_flat(const struct field_nets *nets, const struct field_line *line
     return true;
 }
 
+static bool is_finite(const struct net *f)
+{
+    double sum = 0;
+    for (size_t k = 0; k < net_size(f); k++)
+        sum += fabs(f->c[k]);
+    return isfinite(sum);
+}
+
 /* The first root of a line in a side's list, which is in the order of lines. */
 static size_t first_of(const struct root_list *list, uint32_t line)
 {
@@ -374,6 +382,8 @@ static void trace_line(struct cells *cells, const struct field_nets *nets,
         cell.side[k] = side_of(cells, &region->side[k], line);
     }
     combine(nets, at, &f);
+    if (!is_finite(&f))
+        return; /* light or eye are so far away that numbers overflow */
     if (is_flat(nets, at, &f)) {
         const double middle[2] = {0.5, 0.5};
         struct traced_point point = march_point(&cells->march, middle);
@@ -408,6 +418,8 @@ void trace_patch(struct tracer *tracer, const struct limit_patch *patch,
         struct field_box box;
         field_make_box(&set->field[f], bezier.origin, &surface_box, &box);
         for (uint32_t i = set->first_line[f]; i < set->first_line[f + 1]; i++) {
+            if (*tracer->cancelled || tracer->work.failed)
+                break;
             if (field_box_sign(&box, &set->line[i]) && !has_roots(region, i))
                 continue;
             if (!net.c) { /* the first line that needs them */

@@ -2,6 +2,8 @@
 #ifndef SHEEN_LINES_TRACER_H
 #define SHEEN_LINES_TRACER_H
 
+#include <stdatomic.h>
+
 #include "server/curves/lines/sides.h"
 
 /* A point of a line. */
@@ -43,7 +45,10 @@ size_t traced_bytes(const struct traced *traced);
 
 struct tracer {
     struct sides_work work;
-    double tolerance; /* greatest distance between a polyline and its line, world units */
+    double tolerance;   /* greatest distance between a polyline and its line, world units */
+    size_t most_points; /* room for points; with more, is_over and work.failed are set */
+    bool is_over;
+    const atomic_bool *cancelled; /* tracing stops soon once it is true */
     struct traced out;
     size_t n_cells, n_deepest; /* squares looked at; the most often halved one */
 };
