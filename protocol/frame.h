@@ -44,8 +44,10 @@ enum message_type {
     MESSAGE_BREAKS = 18,      /* server: Breaks; DATA follows if there are records */
     MESSAGE_COMPARE = 19,     /* client: Compare */
     MESSAGE_COMPARED = 20,    /* server: Compared */
+    MESSAGE_TRACE_LINES = 21, /* client: TraceLines */
+    MESSAGE_CURVES = 22,      /* server: Curves; DATA follows if there are records */
 };
-enum { MESSAGE_TYPES = MESSAGE_COMPARED + 1 }; /* above every type */
+enum { MESSAGE_TYPES = MESSAGE_CURVES + 1 }; /* above every type */
 
 struct message_header {
     uint8_t major;

@@ -17,6 +17,8 @@ FITS(sheen_FindBreaks_size, PROTOCOL_MAX_LARGE_BODY_BYTES);
 FITS(sheen_Breaks_size, PROTOCOL_MAX_LARGE_BODY_BYTES);
 FITS(sheen_Compare_size, PROTOCOL_MAX_LARGE_BODY_BYTES);
 FITS(sheen_Compared_size, PROTOCOL_MAX_LARGE_BODY_BYTES);
+FITS(sheen_TraceLines_size, PROTOCOL_MAX_LARGE_BODY_BYTES);
+FITS(sheen_Curves_size, PROTOCOL_MAX_LARGE_BODY_BYTES);
 FITS(sheen_Superseded_size, PROTOCOL_MAX_SMALL_BODY_BYTES);
 FITS(sheen_Progress_size, PROTOCOL_MAX_SMALL_BODY_BYTES);
 FITS(sheen_Stats_size, PROTOCOL_MAX_SMALL_BODY_BYTES);
@@ -55,6 +57,10 @@ const pb_msgdesc_t *message_fields(uint8_t type)
         return sheen_Compare_fields;
     case MESSAGE_COMPARED:
         return sheen_Compared_fields;
+    case MESSAGE_TRACE_LINES:
+        return sheen_TraceLines_fields;
+    case MESSAGE_CURVES:
+        return sheen_Curves_fields;
     default:
         return NULL;
     }

@@ -61,6 +61,7 @@ bool message_check_render(const sheen_Render *render, uint32_t max_width_px, uin
 /* Requests of computations. The scene is checked as a RENDER, without the device's limits. */
 bool message_check_find_breaks(const sheen_FindBreaks *asked, char text[static MESSAGE_TEXT_BYTES]);
 bool message_check_compare(const sheen_Compare *asked, char text[static MESSAGE_TEXT_BYTES]);
+bool message_check_trace_lines(const sheen_TraceLines *asked, char text[static MESSAGE_TEXT_BYTES]);
 
 /* The planes that the daemon must draw for a frame: those requested, and those from which its false
  * colour is painted. */

@@ -596,6 +596,8 @@ bool message_check_answer(uint8_t type, const void *body, char text[static MESSA
         return check_breaks(body, text);
     case MESSAGE_COMPARED:
         return check_compared(body, text);
+    case MESSAGE_CURVES:
+        return check_curves(body, text);
     case MESSAGE_PROGRESS:
         return check_text(((const sheen_Progress *)body)->stage, "stage", text);
     case MESSAGE_STATS: {

@@ -20,5 +20,7 @@ bool check_whole_scene(const sheen_Camera *camera, const sheen_Lines *lines,
 bool check_breaks(const sheen_Breaks *breaks, char *text);
 /* The answer COMPARED. */
 bool check_compared(const sheen_Compared *compared, char *text);
+/* The answer CURVES. */
+bool check_curves(const sheen_Curves *curves, char *text);
 
 #endif

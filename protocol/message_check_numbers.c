@@ -2,6 +2,7 @@
 #include <math.h>
 
 #include "protocol/break_records.h"
+#include "protocol/curve_records.h"
 #include "protocol/message_check.h"
 
 /* Requests of computations have no picture: what only pictures have must be what it is in a request that leaves it
@@ -131,4 +132,33 @@ bool check_compared(const sheen_Compared *compared, char *text)
            check_whole_scene(&compared->camera, &compared->lines_used, compared->lights,
                              compared->lights_count, text) &&
            check_text(compared->server, "server", text);
+}
+
+bool message_check_trace_lines(const sheen_TraceLines *asked, char text[static MESSAGE_TEXT_BYTES])
+{
+    for (size_t i = 0; i < asked->at_count; i++)
+        if (!check_number(asked->at[i], RANGE_LINE_PLACE, text))
+            return false;
+    if (asked->at_count > 0 && asked->has_silhouettes && asked->silhouettes)
+        return check_refuse(text, "at is for lines; silhouettes have no places");
+    return check_scene(&asked->scene, text) &&
+           (!asked->has_tolerance || check_number(asked->tolerance, RANGE_TOLERANCE, text));
+}
+
+bool check_curves(const sheen_Curves *curves, char *text)
+{
+    const uint64_t bytes = (uint64_t)curves->curves * CURVE_BYTES +
+                           curves->points * CURVE_POINT_BYTES +
+                           (uint64_t)curves->marks * CURVE_MARK_BYTES;
+    if (curves->points > PROTOCOL_MAX_FRAME_BYTES || curves->data_bytes != bytes ||
+        bytes > PROTOCOL_MAX_FRAME_BYTES)
+        return check_refuse(text, "data_bytes is %llu; its records take %llu, and at most %llu",
+                            (unsigned long long)curves->data_bytes, (unsigned long long)bytes,
+                            (unsigned long long)PROTOCOL_MAX_FRAME_BYTES);
+    if (!(curves->diagonal >= 0 && isfinite(curves->diagonal)))
+        return check_refuse(text, "diagonal is no length");
+    return check_number(curves->tolerance, RANGE_TOLERANCE, text) &&
+           check_whole_scene(&curves->camera, &curves->lines, curves->lights, curves->lights_count,
+                             text) &&
+           check_text(curves->server, "server", text);
 }

@@ -44,6 +44,8 @@ NAMES(sheen_ComparedSide);
 NAMES(sheen_Alignment);
 NAMES(sheen_Compare);
 NAMES(sheen_Compared);
+NAMES(sheen_TraceLines);
+NAMES(sheen_Curves);
 NAMES(sheen_Progress);
 NAMES(sheen_Latency);
 NAMES(sheen_Stats);
@@ -86,6 +88,8 @@ static const struct {
     MESSAGE(sheen_Alignment),
     MESSAGE(sheen_Compare),
     MESSAGE(sheen_Compared),
+    MESSAGE(sheen_TraceLines),
+    MESSAGE(sheen_Curves),
     MESSAGE(sheen_Error),
 };
 

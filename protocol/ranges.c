@@ -56,6 +56,8 @@ const struct range RANGES[N_RANGES] = {
     [RANGE_COMPARE_LENGTH] = {"line_length", "--limit line_length", 0, GREATEST, true, "units"},
     [RANGE_COMPARE_CURVATURE] = {"curvature", "--limit curvature", 0, 2, true, ""},
     [RANGE_COMPARE_SAMPLES] = {"samples", "--samples", 1000, 100000000, false, ""},
+    [RANGE_TOLERANCE] = {"tolerance", "--tolerance", 0, GREATEST, true, "units"},
+    [RANGE_LINE_PLACE] = {"at", "--at", -1e6, 1e6, false, ""},
 };
 
 bool range_holds(const struct range *range, double value)

@@ -9,7 +9,9 @@
 
 const struct compute_kind *compute_kind_of(uint8_t type)
 {
-    return type == MESSAGE_COMPARE ? &compute_compare_kind : &compute_breaks_kind;
+    return type == MESSAGE_COMPARE       ? &compute_compare_kind
+           : type == MESSAGE_TRACE_LINES ? &compute_lines_kind
+                                         : &compute_breaks_kind;
 }
 
 struct compute *compute_create(struct request *request, uint8_t type,

@@ -4,6 +4,7 @@
  * compute.c         the life of such a request: its turn, its memory, its slices, its answer
  * compute_breaks.c  the kind that finds breaks; every other kind is a file like it
  * compute_compare.c the kind that compares two surfaces
+ * compute_lines.c   the kind that traces lines
  *
  * A computation waits in line until few enough others run and its memory is charged to its client. Then its slices
  * take turns with those of builds (server/assets/slices.h). While frames are drawn or encoded, one slice of it runs
@@ -42,11 +43,12 @@ struct compute_kind {
 
 /* The kind of a message's type. */
 const struct compute_kind *compute_kind_of(uint8_t type);
-extern const struct compute_kind compute_breaks_kind, compute_compare_kind;
+extern const struct compute_kind compute_breaks_kind, compute_compare_kind, compute_lines_kind;
 
 union compute_answer {
     sheen_Breaks breaks;
     sheen_Compared compared;
+    sheen_Curves curves;
 };
 
 /* A task on the pool: begin(), a slice, or pack(). */

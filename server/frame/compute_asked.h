@@ -7,6 +7,7 @@
 union compute_asked {
     sheen_FindBreaks find_breaks;
     sheen_Compare compare;
+    sheen_TraceLines trace_lines;
 };
 
 #endif

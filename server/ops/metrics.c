@@ -100,6 +100,7 @@ static void write_requests(const struct daemon *daemon, struct text_buffer *text
                    {MESSAGE_FRAME, "frame"},
                    {MESSAGE_BREAKS, "breaks"},
                    {MESSAGE_COMPARED, "compared"},
+                   {MESSAGE_CURVES, "curves"},
                    {MESSAGE_SUPERSEDED, "superseded"},
                    {MESSAGE_STATS, "stats"},
                    {MESSAGE_ERROR, "error"}};

@@ -156,6 +156,7 @@ static void on_message(void *owner, const struct message_header *header, const u
     case MESSAGE_RENDER:
     case MESSAGE_FIND_BREAKS:
     case MESSAGE_COMPARE:
+    case MESSAGE_TRACE_LINES:
         handle_body(session, header, body);
         break;
     default:

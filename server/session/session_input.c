@@ -11,7 +11,7 @@ enum { MINOR_OF_COMPUTATIONS = 5 };
 /* True if the type is a message that asks for a computation. */
 static bool asks_computation(uint8_t type)
 {
-    return type == MESSAGE_FIND_BREAKS || type == MESSAGE_COMPARE;
+    return type == MESSAGE_FIND_BREAKS || type == MESSAGE_COMPARE || type == MESSAGE_TRACE_LINES;
 }
 
 const char *session_find_disorder(const struct session *session,

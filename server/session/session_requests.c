@@ -173,8 +173,10 @@ void session_query(struct session *session, uint32_t seq, const sheen_ModelQuery
 static bool check_asked(uint8_t type, const union compute_asked *asked,
                         char text[static MESSAGE_TEXT_BYTES])
 {
-    return type == MESSAGE_COMPARE ? message_check_compare(&asked->compare, text)
-                                   : message_check_find_breaks(&asked->find_breaks, text);
+    if (type == MESSAGE_COMPARE)
+        return message_check_compare(&asked->compare, text);
+    return type == MESSAGE_TRACE_LINES ? message_check_trace_lines(&asked->trace_lines, text)
+                                       : message_check_find_breaks(&asked->find_breaks, text);
 }
 
 void session_compute(struct session *session, uint32_t seq, uint8_t type,

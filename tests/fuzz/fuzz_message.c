@@ -24,6 +24,8 @@ union body {
     sheen_Breaks breaks;
     sheen_Compare compare;
     sheen_Compared compared;
+    sheen_TraceLines trace_lines;
+    sheen_Curves curves;
 };
 
 static void check_render(const sheen_Render *render)
@@ -56,6 +58,8 @@ static void check(uint8_t type, const union body *body)
         MUST(message_check_find_breaks(&body->find_breaks, text) || text[0]);
     else if (type == MESSAGE_COMPARE)
         MUST(message_check_compare(&body->compare, text) || text[0]);
+    else if (type == MESSAGE_TRACE_LINES)
+        MUST(message_check_trace_lines(&body->trace_lines, text) || text[0]);
     else if (type == MESSAGE_UPLOAD_BEGIN)
         MUST(message_check_upload_begin(&body->upload_begin, text) || text[0]);
     else if (type == MESSAGE_MODEL_QUERY)

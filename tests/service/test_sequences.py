@@ -19,7 +19,7 @@ SECONDS = float(os.environ.get("SHEEN_FUZZ_S", "0"))
 SESSIONS = 150  # without SHEEN_FUZZ_S
 PATIENCE_S = 10
 FINAL = {wire.HELLO_OK, wire.UPLOAD_STATE, wire.MODEL_INFO, wire.STATS, wire.ERROR, wire.SUPERSEDED,
-         wire.BREAKS}
+         wire.BREAKS, wire.CURVES}
 EDGES = (0.0, -0.0, 1.0, -1.0, 0.5, 1e-30, 1e30, -1e300, 5e-324, float("inf"), float("nan"))
 
 
@@ -110,7 +110,12 @@ class Script:
         if noise.random() < 0.2:
             scene += field(16, noise.choice((0, 1, 60000)))
         limits = b"".join(field(number, abs(self.number())) for number in (2, 3, 4) if noise.random() < 0.3)
-        self.ask(wire.FIND_BREAKS, field(1, scene) + limits)
+        if noise.random() < 0.5:
+            self.ask(wire.FIND_BREAKS, field(1, scene) + limits)
+            return
+        places = b"".join(field(3, self.number()) for _ in range(noise.choice((0, 0, 1, 3))))
+        tolerance = field(2, abs(self.number())) if noise.random() < 0.7 else b""
+        self.ask(wire.TRACE_LINES, field(1, scene) + tolerance + places + field(4, noise.choice((0, 0, 0, 1))))
 
     def stats(self):
         self.ask(wire.STATS_QUERY, b"")
@@ -222,8 +227,8 @@ class Sequences(unittest.TestCase):
             magic, major, kind, flags, length, seq = struct.unpack("<4sBBHII", header)
             self.assertEqual((magic, major), (wire.MAGIC, 1))
             body = client.read(length)
-            size = wire.decode(body)[{wire.FRAME: 5, wire.BREAKS: 1}[kind]][0] \
-                if kind in (wire.FRAME, wire.BREAKS) else 0
+            size = wire.decode(body)[{wire.FRAME: 5, wire.BREAKS: 1, wire.CURVES: 1}[kind]][0] \
+                if kind in (wire.FRAME, wire.BREAKS, wire.CURVES) else 0
             if size > 0:
                 self.assertNotIn(seq, left)
                 left[seq] = size

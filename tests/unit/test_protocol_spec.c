@@ -11,6 +11,7 @@
 
 #include "protocol/break_records.h"
 #include "protocol/codec.h"
+#include "protocol/curve_records.h"
 #include "protocol/message.h"
 #include "protocol/ranges.h"
 
@@ -39,6 +40,8 @@ static void same_message(uint8_t type, uint32_t seq, const void *body, const uin
         sheen_Breaks breaks;
         sheen_Compare compare;
         sheen_Compared compared;
+        sheen_TraceLines trace_lines;
+        sheen_Curves curves;
     } decoded;
     assert_int_equal(message_header_decode(&header, bytes), HEADER_OK);
     assert_int_equal(header.type, type);
@@ -421,8 +424,81 @@ static void check_break_records(const uint8_t *bytes, size_t size)
     assert_memory_equal(packed, bytes, size);
 }
 
-/* Another version of zstd may compress differently: so the example is unpacked, and its pixels,
- * packed anew, must unpack to the same pixels. */
+static void check_trace_lines(const uint8_t *bytes, size_t size)
+{
+    const sheen_TraceLines asked = {.scene = least_render(sheen_Encoding_ENCODING_PNG),
+                                    .has_tolerance = true,
+                                    .tolerance = 0.001,
+                                    .at_count = 2,
+                                    .at = {0.25, 0.5}};
+    same_message(MESSAGE_TRACE_LINES, 13, &asked, bytes, size);
+}
+
+static void check_curves(const uint8_t *bytes, size_t size)
+{
+    const sheen_Curves curves = {.data_bytes =
+                                     CURVE_BYTES + 2 * CURVE_POINT_BYTES + CURVE_MARK_BYTES,
+                                 .curves = 1,
+                                 .points = 2,
+                                 .marks = 1,
+                                 .tolerance = 0.001,
+                                 .diagonal = 1,
+                                 .total_us = 1500,
+                                 .camera = CAMERA,
+                                 .lights_count = 1,
+                                 .lights = {{.has_centre = true,
+                                             .centre = {0, 0, 4},
+                                             .has_u = true,
+                                             .u = {4, 0, 0},
+                                             .has_v = true,
+                                             .v = {0, 4, 0},
+                                             .has_pattern = true,
+                                             .pattern = {.kind = sheen_PatternKind_PATTERN_STRIPES,
+                                                         .has_count = true,
+                                                         .count = 20}}},
+                                 .server = "0.1.0"};
+    char text[MESSAGE_TEXT_BYTES];
+    same_message(MESSAGE_CURVES, 13, &curves, bytes, size);
+    assert_true(message_check_answer(MESSAGE_CURVES, &curves, text));
+    sheen_Curves wrong = curves;
+    wrong.points = 3;
+    assert_false(message_check_answer(MESSAGE_CURVES, &wrong, text));
+}
+
+/* The four records of the answer above. */
+static void check_curve_records(const uint8_t *bytes, size_t size)
+{
+    const struct curve_record curve = {CURVE_LINE, false, 0, 1, 0.5, 2, 1};
+    const struct curve_point_record points[2] = {
+        {3, 0.5, 0, {0, 0, 0}, {0, 0, 1}, {1, 0, 0}, 0, 0},
+        {4, 0.5, 1, {1, 0, 0}, {0, 0, 1}, {1, 0, 0}, 0, 1},
+    };
+    const struct curve_mark_record mark = {CURVE_SINGULAR, 0, 1, 4, 0.5, 1, {1, 0, 0}, {0, 0, 1}};
+    uint8_t packed[CURVE_BYTES + 2 * CURVE_POINT_BYTES + CURVE_MARK_BYTES];
+    uint8_t *at_points = packed + CURVE_BYTES, *at_mark = at_points + 2 * CURVE_POINT_BYTES;
+    struct curve_record curve_read;
+    struct curve_point_record point_read;
+    struct curve_mark_record mark_read;
+    assert_int_equal(size, sizeof packed);
+    curve_pack(&curve, packed);
+    for (int i = 0; i < 2; i++)
+        curve_point_pack(&points[i], at_points + i * CURVE_POINT_BYTES);
+    curve_mark_pack(&mark, at_mark);
+    assert_memory_equal(packed, bytes, size);
+    assert_true(curve_unpack(packed, &curve_read));
+    assert_true(curve_point_unpack(at_points + CURVE_POINT_BYTES, &point_read));
+    assert_true(curve_mark_unpack(at_mark, &mark_read));
+    assert_int_equal(curve_read.points, 2);
+    assert_true(point_read.length == 1 && point_read.along[0] == 1 && mark_read.v == 1);
+    /* Numbers out of range. */
+    packed[0] = CURVE_KINDS;
+    assert_false(curve_unpack(packed, &curve_read));
+    at_points[31] = 0x7f; /* a coordinate above 1e300 */
+    assert_false(curve_point_unpack(at_points, &point_read));
+    at_mark[0] = CURVE_MARK_KINDS;
+    assert_false(curve_mark_unpack(at_mark, &mark_read));
+}
+
 static void check_compare(const uint8_t *bytes, size_t size)
 {
     sheen_Compare asked = {.scene = least_render(sheen_Encoding_ENCODING_PNG),
@@ -480,6 +556,8 @@ static void check_compared(const uint8_t *bytes, size_t size)
     assert_true(message_check_answer(MESSAGE_COMPARED, &compared, text));
 }
 
+/* Another version of zstd may compress differently: so the example is unpacked, and its pixels,
+ * packed anew, must unpack to the same pixels. */
 static void check_zstd_data(const uint8_t *bytes, size_t size)
 {
     const uint8_t colour[8] = {255, 255, 255, 255, 0, 0, 0, 0};
@@ -579,6 +657,9 @@ static const struct {
     {"break-records", check_break_records},
     {"compare", check_compare},
     {"compared", check_compared},
+    {"trace-lines", check_trace_lines},
+    {"curves", check_curves},
+    {"curve-records", check_curve_records},
 };
 #define N_EXAMPLES (sizeof(EXAMPLES) / sizeof(*EXAMPLES))
 

@@ -361,18 +361,25 @@ static void all_agree_at_each_end(void **state)
     }
 }
 
-/* --- the limits of breaks, which only a FIND_BREAKS has */
+/* --- the numbers of computations, which no RENDER has */
 
-static const enum range_name LIMITS[] = {RANGE_GAP, RANGE_ANGLE, RANGE_PERCENT};
+static const enum range_name LIMITS[] = {RANGE_GAP, RANGE_ANGLE, RANGE_PERCENT, RANGE_TOLERANCE,
+                                         RANGE_LINE_PLACE};
 #define N_LIMITS (sizeof LIMITS / sizeof *LIMITS)
 
 static bool limit_is_taken(size_t i, double value)
 {
     char text[MESSAGE_TEXT_BYTES];
     sheen_FindBreaks asked = {.scene = GOOD};
-    bool *const has[N_LIMITS] = {&asked.has_gap, &asked.has_angle_deg,
-                                 &asked.has_curvature_percent};
-    double *const member[N_LIMITS] = {&asked.gap, &asked.angle_deg, &asked.curvature_percent};
+    bool *const has[] = {&asked.has_gap, &asked.has_angle_deg, &asked.has_curvature_percent};
+    double *const member[] = {&asked.gap, &asked.angle_deg, &asked.curvature_percent};
+    sheen_TraceLines lines = {.scene = GOOD};
+    if (LIMITS[i] == RANGE_TOLERANCE || LIMITS[i] == RANGE_LINE_PLACE) {
+        lines.has_tolerance = LIMITS[i] == RANGE_TOLERANCE;
+        lines.at_count = LIMITS[i] == RANGE_LINE_PLACE;
+        lines.tolerance = lines.at[0] = value;
+        return message_check_trace_lines(&lines, text);
+    }
     *has[i] = true;
     *member[i] = value;
     return message_check_find_breaks(&asked, text);
@@ -383,8 +390,8 @@ static void limits_of_breaks_agree_at_each_end(void **state)
     (void)state;
     for (size_t i = 0; i < N_LIMITS; i++) {
         const struct range *range = &RANGES[LIMITS[i]];
-        assert_true(range->above_least);
-        assert_false(limit_is_taken(i, range->least));
+        assert_int_equal(limit_is_taken(i, range->least), !range->above_least);
+        assert_false(limit_is_taken(i, next(REAL, range->least, -INFINITY)));
         assert_true(limit_is_taken(i, next(REAL, range->least, INFINITY)));
         assert_true(limit_is_taken(i, range->greatest));
         assert_false(limit_is_taken(i, next(REAL, range->greatest, INFINITY)));
