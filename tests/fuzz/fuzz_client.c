@@ -65,6 +65,23 @@ static void find_breaks(struct sheen_session *session)
     sheen_breaks_finish(&breaks);
 }
 
+static void trace_lines(struct sheen_session *session)
+{
+    const struct sheen_request request = SHEEN_REQUEST_DEFAULTS;
+    struct sheen_curves curves = SHEEN_CURVES_DEFAULTS;
+    struct sheen_error error;
+    session->hello.minor = PROTOCOL_MINOR;
+    if (sheen_trace_lines(session, &request, NULL, NULL, &curves, &error) == SHEEN_OK) {
+        size_t n_points = 0;
+        for (uint32_t i = 0; i < curves.n_curves; i++)
+            n_points += curves.curves[i].n_points;
+        MUST(n_points == curves.n_points);
+        for (uint32_t i = 0; i < curves.n_curves; i++)
+            MUST(curves.curves[i].points[curves.curves[i].n_points - 1].length >= 0);
+    }
+    sheen_curves_finish(&curves);
+}
+
 void fuzz_one(const uint8_t *bytes, size_t size)
 {
     static const uint8_t types[] = {MESSAGE_HELLO_OK, MESSAGE_UPLOAD_STATE, MESSAGE_MODEL_INFO,
@@ -75,16 +92,20 @@ void fuzz_one(const uint8_t *bytes, size_t size)
         return;
     MUST(socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) == 0);
     MUST(fcntl(ends[0], F_SETFL, O_NONBLOCK) == 0);
-    bool is_breaks = bytes[0] == sizeof types, is_frames = bytes[0] > sizeof types;
+    bool is_breaks = bytes[0] == sizeof types, is_lines = bytes[0] == sizeof types + 1;
+    bool is_frames = bytes[0] > sizeof types + 1;
     size_t n_late = is_frames ? (size - 2) * bytes[0] / 256 : 0, n_early = size - 2 - n_late;
     MUST(write(ends[1], bytes + 2, n_early) == (ssize_t)n_early);
     session =
         (struct sheen_session){.connection = {.fd = ends[0], .timeout_ms = 1000}, .last_seq = SEQ};
     if (is_frames) {
         receive_frames(&session, bytes[1], ends[1], bytes + 2 + n_early, n_late);
-    } else if (is_breaks) {
+    } else if (is_breaks || is_lines) {
         MUST(shutdown(ends[1], SHUT_WR) == 0); /* the request must find a reader */
-        find_breaks(&session);
+        if (is_lines)
+            trace_lines(&session);
+        else
+            find_breaks(&session);
         close(ends[1]);
     } else {
         close(ends[1]);

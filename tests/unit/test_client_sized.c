@@ -200,6 +200,8 @@ static void defaults_are_the_same_both_ways(void **state)
     assert_int_equal(sheen_frame_defaults().size, sizeof(struct sheen_frame));
     assert_int_equal(sheen_stats_defaults().size, sizeof(struct sheen_stats));
     assert_int_equal(sheen_breaks_defaults().size, sizeof(struct sheen_breaks));
+    assert_int_equal(sheen_curves_defaults().size, sizeof(struct sheen_curves));
+    assert_int_equal(sheen_curve_options_defaults().size, sizeof(struct sheen_curve_options));
     assert_int_equal(sheen_break_limits_defaults().size, sizeof(struct sheen_break_limits));
     assert_int_equal(sheen_compare_options_defaults().size, sizeof(struct sheen_compare_options));
     assert_int_equal(sheen_comparison_defaults().size, sizeof(struct sheen_comparison));
@@ -240,6 +242,8 @@ static const struct {
     ADDED(sheen_breaks, size, server, 3240),
     ADDED(sheen_compare_options, size, samples, 88),
     ADDED(sheen_comparison, size, server, 4952),
+    ADDED(sheen_curve_options, size, silhouettes, 40),
+    ADDED(sheen_curves, size, server, 3184),
     /* Structs without `size` never change: each has one row. */
     ADDED(sheen_error, status, text, 644),
     ADDED(sheen_progress, report, context, 16),
@@ -260,6 +264,9 @@ static const struct {
     ADDED(sheen_compared_place, face, position, 48),
     ADDED(sheen_compared_measure, is_known, area_out, 144),
     ADDED(sheen_compared_side, samples, measures, 816),
+    ADDED(sheen_curve_point, face, length, 112),
+    ADDED(sheen_curve, light, length, 48),
+    ADDED(sheen_curve_mark, kind, normal, 80),
 };
 
 static void members_stay_where_they_are(void **state)
