@@ -14,9 +14,10 @@ extern const struct command COMMAND_LEVELS;
 extern const struct command COMMAND_PICK;
 extern const struct command COMMAND_BREAKS;
 extern const struct command COMMAND_COMPARE;
+extern const struct command COMMAND_LINES;
 
 /* All commands, in the order in which they are listed. */
-#define N_COMMANDS 10
+#define N_COMMANDS 11
 extern const struct command *const COMMANDS[N_COMMANDS];
 
 #endif

@@ -259,6 +259,7 @@ enum options_result options_parse(const struct command *command, int argc, char 
     size_t n = options_rows(command, rows);
     *options = (struct options){.request = SHEEN_REQUEST_DEFAULTS,
                                 .break_limits = SHEEN_BREAK_LIMITS_DEFAULTS,
+                                .curve_options = SHEEN_CURVE_OPTIONS_DEFAULTS,
                                 .reconnect_s = DEFAULT_RECONNECT_S,
                                 .orbit_deg = 1};
     enum options_result result = parse_options(argc, argv, rows, n, options, why);

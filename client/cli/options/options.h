@@ -71,7 +71,10 @@ struct options {
     const char *junit;                      /* file of a JUnit report; NULL: none */
     const char *markdown;                   /* compare: file of a summary; NULL: none */
     struct comparison_limit compare_limits[COMPARISON_ITEMS];
-    bool align; /* compare */
+    bool align;                               /* compare */
+    struct sheen_curve_options curve_options; /* lines; its `at` is not set */
+    double places[SHEEN_MAX_CURVE_PLACES];    /* lines: curve_options.n_at of them */
+    bool visible_only;                        /* lines */
 };
 
 /* One option. `apply` gets the value (NULL for a flag) and returns false with the reason in `why`.
