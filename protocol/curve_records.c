@@ -22,14 +22,9 @@ static bool is_direction(const double v[3])
     return square == 0 || fabs(square - 1) < 1e-6;
 }
 
-static bool is_parameter(double value)
+static bool is_uv(double u, double v)
 {
-    return value >= 0 && value <= 1;
-}
-
-static bool is_place(double value)
-{
-    return isnan(value) || isfinite(value);
+    return u >= 0 && u <= 1 && v >= 0 && v <= 1;
 }
 
 void curve_pack(const struct curve_record *curve, uint8_t bytes[CURVE_BYTES])
@@ -56,7 +51,7 @@ bool curve_unpack(const uint8_t bytes[CURVE_BYTES], struct curve_record *curve)
     curve->length = record_take_double(&from);
     return curve->kind < CURVE_KINDS && is_closed <= 1 && curve->light < PROTOCOL_MAX_LIGHTS &&
            curve->points >= 2 && curve->points <= PROTOCOL_MAX_FRAME_BYTES / CURVE_POINT_BYTES &&
-           is_place(curve->place) && record_is_length(curve->length);
+           !isinf(curve->place) && record_is_length(curve->length);
 }
 
 void curve_point_pack(const struct curve_point_record *point, uint8_t bytes[CURVE_POINT_BYTES])
@@ -82,8 +77,8 @@ bool curve_point_unpack(const uint8_t bytes[CURVE_POINT_BYTES], struct curve_poi
     take_doubles(&from, point->along, 3);
     point->residual = record_take_double(&from);
     point->length = record_take_double(&from);
-    return is_parameter(point->u) && is_parameter(point->v) && record_is_point(point->point) &&
-           is_direction(point->normal) && is_direction(point->along) && is_place(point->residual) &&
+    return is_uv(point->u, point->v) && record_is_point(point->point) &&
+           is_direction(point->normal) && is_direction(point->along) && !isinf(point->residual) &&
            record_is_length(point->length);
 }
 
@@ -113,6 +108,5 @@ bool curve_mark_unpack(const uint8_t bytes[CURVE_MARK_BYTES], struct curve_mark_
     take_doubles(&from, mark->point, 3);
     take_doubles(&from, mark->normal, 3);
     return mark->kind < CURVE_MARK_KINDS && mark->light < PROTOCOL_MAX_LIGHTS &&
-           is_parameter(mark->u) && is_parameter(mark->v) && record_is_point(mark->point) &&
-           is_direction(mark->normal);
+           is_uv(mark->u, mark->v) && record_is_point(mark->point) && is_direction(mark->normal);
 }

@@ -4,16 +4,13 @@
 #define SHEEN_PROTOCOL_CURVE_RECORDS_H
 
 #include <stdbool.h>
-#include <stddef.h>
 #include <stdint.h>
 
 #define CURVE_BYTES 32u
 #define CURVE_POINT_BYTES 112u
 #define CURVE_MARK_BYTES 80u
 
-enum curve_kind { CURVE_LINE, CURVE_SILHOUETTE };
-enum { CURVE_KINDS = CURVE_SILHOUETTE + 1 };
-
+enum curve_kind { CURVE_LINE, CURVE_SILHOUETTE, CURVE_KINDS };
 struct curve_record {
     uint8_t kind;    /* enum curve_kind */
     bool is_closed;  /* the last point is followed by the first */
@@ -25,35 +22,26 @@ struct curve_record {
 };
 
 struct curve_point_record {
-    uint32_t face;    /* Ptex face */
-    double u, v;      /* on it */
-    double point[3];  /* position */
-    double normal[3]; /* unit */
-    double along[3];  /* unit tangent of the curve; zero: it has none there */
-    double residual;  /* place on the light less the line's; NaN: no light is met exactly there */
-    double length;    /* of the polyline from the curve's first point to here */
+    uint32_t face; /* Ptex face */
+    double u, v;
+    /* Position; unit normal; unit tangent of the curve, zero where it has none. */
+    double point[3], normal[3], along[3];
+    double residual; /* place on the light less the line's; NaN: none is met exactly there */
+    double length;   /* of the polyline from the curve's first point to here */
 };
 
-enum curve_mark_kind {
-    CURVE_SINGULAR, /* curves meet, or a curve is one point */
-    CURVE_FLAT,     /* the line covers a part of the surface */
-};
-enum { CURVE_MARK_KINDS = CURVE_FLAT + 1 };
-
+/* Curves meet or one is a point; the line covers a part of the surface. */
+enum curve_mark_kind { CURVE_SINGULAR, CURVE_FLAT, CURVE_MARK_KINDS };
 struct curve_mark_record {
     uint8_t kind; /* enum curve_mark_kind */
     uint16_t light;
-    uint32_t line;
-    uint32_t face;
-    double u, v;
-    double point[3];
-    double normal[3]; /* zero: there is none */
+    uint32_t line, face;
+    double u, v, point[3], normal[3]; /* normal: zero if there is none */
 };
 
 void curve_pack(const struct curve_record *curve, uint8_t bytes[CURVE_BYTES]);
 void curve_point_pack(const struct curve_point_record *point, uint8_t bytes[CURVE_POINT_BYTES]);
 void curve_mark_pack(const struct curve_mark_record *mark, uint8_t bytes[CURVE_MARK_BYTES]);
-
 /* False if a number is out of its range. */
 bool curve_unpack(const uint8_t bytes[CURVE_BYTES], struct curve_record *curve);
 bool curve_point_unpack(const uint8_t bytes[CURVE_POINT_BYTES], struct curve_point_record *point);

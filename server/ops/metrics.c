@@ -94,16 +94,11 @@ static void write_requests(const struct daemon *daemon, struct text_buffer *text
     static const struct {
         uint8_t type;
         const char *name;
-    } ANSWERS[] = {{MESSAGE_HELLO_OK, "hello"},
-                   {MESSAGE_UPLOAD_STATE, "upload"},
-                   {MESSAGE_MODEL_INFO, "model"},
-                   {MESSAGE_FRAME, "frame"},
-                   {MESSAGE_BREAKS, "breaks"},
-                   {MESSAGE_COMPARED, "compared"},
-                   {MESSAGE_CURVES, "curves"},
-                   {MESSAGE_SUPERSEDED, "superseded"},
-                   {MESSAGE_STATS, "stats"},
-                   {MESSAGE_ERROR, "error"}};
+    } ANSWERS[] = {{MESSAGE_HELLO_OK, "hello"},   {MESSAGE_UPLOAD_STATE, "upload"},
+                   {MESSAGE_MODEL_INFO, "model"}, {MESSAGE_FRAME, "frame"},
+                   {MESSAGE_BREAKS, "breaks"},    {MESSAGE_COMPARED, "compared"},
+                   {MESSAGE_CURVES, "curves"},    {MESSAGE_SUPERSEDED, "superseded"},
+                   {MESSAGE_STATS, "stats"},      {MESSAGE_ERROR, "error"}};
     const struct stats *stats = &daemon->sessions.stats;
     head(text, "answers_total", "counter", "Answers, by what they are.");
     for (size_t i = 0; i < sizeof ANSWERS / sizeof *ANSWERS; i++)

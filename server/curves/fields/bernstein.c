@@ -153,7 +153,7 @@ double curve_value(const double *c, int n, double t)
 
 double net_value(const struct net *a, double u, double v)
 {
-    double column[NET_MOST_DEGREE + 1];
+    double column[NET_MOST_DEGREE + 1] = {0};
     for (int i = 0; i <= a->m; i++)
         column[i] = curve_value(a->c + i * (a->n + 1), a->n, v);
     return curve_value(column, a->m, u);

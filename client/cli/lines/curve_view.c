@@ -1,4 +1,4 @@
-#include "client/cli/output/curve_view.h"
+#include "client/cli/lines/curve_view.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -6,7 +6,7 @@
 
 #include <stdio.h>
 
-#include "client/cli/output/curve_view.h"
+#include "client/cli/lines/curve_view.h"
 
 struct curve_drawing {
     const struct sheen_curves *curves;

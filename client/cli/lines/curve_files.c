@@ -1,10 +1,10 @@
-#include "client/cli/output/curve_files.h"
+#include "client/cli/lines/curve_files.h"
 
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 
-#include "client/cli/output/cubics.h"
+#include "client/cli/lines/cubics.h"
 
 /* Cubic paths are within this distance of the points, px. */
 static const double PATH_TOLERANCE_PX = 0.02;

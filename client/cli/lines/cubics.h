@@ -1,6 +1,6 @@
 /* Cubic pieces in the plane through points with tangents: few pieces, G1, within a tolerance. Pure, any thread. */
-#ifndef SHEEN_CLIENT_CUBICS_H
-#define SHEEN_CLIENT_CUBICS_H
+#ifndef SHEEN_CLI_CUBICS_H
+#define SHEEN_CLI_CUBICS_H
 
 #include <stddef.h>
 

@@ -9,7 +9,7 @@
 #include "client/cli/commands.h"
 #include "client/cli/files/file.h"
 #include "client/cli/options/values.h"
-#include "client/cli/output/curve_files.h"
+#include "client/cli/lines/curve_files.h"
 #include "client/cli/output/scene_json.h"
 
 #define SCHEMA "sheen-lines-1" /* client/schema/lines-1.json */

@@ -1,4 +1,4 @@
-#include "client/cli/output/cubics.h"
+#include "client/cli/lines/cubics.h"
 
 #include <math.h>
 #include <stdbool.h>
