@@ -18,6 +18,7 @@ struct surface_edge {
     uint8_t edge[2];
     uint8_t levels;  /* LIMIT_BORDER_SHARP, or the levels that a semi-sharp crease takes */
     bool has_dart;   /* an infinitely sharp crease that ends at one of its vertices */
+    bool is_joint;   /* two borders that lie together: each has a curve of its own */
     bool is_flipped; /* the faces are wound against each other */
     double from, by;
 };

@@ -90,8 +90,8 @@ int limit_level_at(const struct limit_node *node, double x, double y)
     return n < 1 ? 1 : n > last ? last + 1 : n;
 }
 
-bool limit_patch_find(const struct limit_tables *tables, const struct limit_place *place,
-                      struct limit_patch *patch)
+static bool find(const struct limit_tables *tables, const struct limit_place *place,
+                 struct limit_patch *patch, bool again)
 {
     const struct limit_node *node = &tables->nodes[place->node];
     double a = place->a, b = place->b, x, y;
@@ -109,11 +109,27 @@ bool limit_patch_find(const struct limit_tables *tables, const struct limit_plac
     turn_place(turn, a, b, &x, &y);
     int n = limit_level_at(node, x, y);
     bool is_vertex = node->kind == LIMIT_CORNER && n > (int)limit_levels(node);
-    limit_patch_of_level(patch, tables, node, is_vertex ? n - 1 : n, x, y);
+    n -= is_vertex;
+    if (again && patch->node == node && patch->level == n)
+        choose_patch(patch, node, n, x, y);
+    else
+        limit_patch_of_level(patch, tables, node, n, x, y);
     patch->turn = turn;
     patch->depth = depth;
     patch->is_vertex = is_vertex;
     return true;
+}
+
+bool limit_patch_find(const struct limit_tables *tables, const struct limit_place *place,
+                      struct limit_patch *patch)
+{
+    return find(tables, place, patch, false);
+}
+
+bool limit_patch_find_again(const struct limit_tables *tables, const struct limit_place *place,
+                            struct limit_patch *patch)
+{
+    return find(tables, place, patch, true);
 }
 
 struct vec limit_turn_to_world(const struct limit_tables *tables, const struct limit_node *node,

@@ -45,6 +45,11 @@ struct limit_patch {
 bool limit_patch_find(const struct limit_tables *tables, const struct limit_place *place,
                       struct limit_patch *patch);
 
+/* As limit_patch_find(), for a patch that an earlier call has found in these tables, or that is zeroed: if the place is in
+ * the same level of the same node, its points are not made again. */
+bool limit_patch_find_again(const struct limit_tables *tables, const struct limit_place *place,
+                            struct limit_patch *patch);
+
 /* The level of a node that contains local (x,y), as limit_patch_of_level() numbers levels; beyond the last one of a
  * CORNER it is the number of levels + 1, which stands for the vertex. */
 int limit_level_at(const struct limit_node *node, double x, double y);

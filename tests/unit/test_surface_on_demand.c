@@ -164,11 +164,48 @@ static void test_heads(void **state)
     }
 }
 
+/* A walk over the surface in small steps, with jumps: a patch that is found again, with the points that it has, is that
+ * which is found anew. */
+static void test_found_again(void **state)
+{
+    (void)state;
+    srand(11);
+    for (size_t m = 0; m < sizeof MODELS / sizeof *MODELS; m++) {
+        struct limit_tables stored, made;
+        build_both(MODELS[m], &stored, &made);
+        struct limit_patch again = {.node = NULL}, anew;
+        struct limit_place place = {.node = 0};
+        unsigned kept = 0;
+        for (int step = 0; step < 3000; step++) {
+            if (step % 10 == 0)
+                place = (struct limit_place){(uint32_t)rand() % (uint32_t)made.n_faces,
+                                             (unsigned)rand() & 3, (rand() % 1000) / 999.0,
+                                             (rand() % 1000) / 999.0};
+            place.a = fmin(fmax(place.a + (rand() % 100 - 50) * 1e-3, 0), 1);
+            place.b *= step % 3 ? 0.5 : 1;
+            const struct limit_node *node = again.node;
+            int level = again.level;
+            bool found = limit_patch_find(&made, &place, &anew);
+            assert_int_equal(limit_patch_find_again(&made, &place, &again), found);
+            if (!found)
+                continue;
+            struct limit_point a, b;
+            limit_patch_evaluate(&made, &anew, &a);
+            limit_patch_evaluate(&made, &again, &b);
+            assert_memory_equal(&a, &b, offsetof(struct limit_point, has_normal));
+            kept += again.node == node && again.level == level;
+        }
+        assert_true(kept > 500);
+        finish_both(&stored, &made);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_same_points),
         cmocka_unit_test(test_heads),
+        cmocka_unit_test(test_found_again),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -64,6 +64,7 @@ static bool join(const struct break_border *a, const struct break_border *b, dou
     *joint = (struct surface_edge){.face = {first->face, second->face},
                                    .edge = {first->edge, second->edge},
                                    .levels = LIMIT_BORDER_SHARP,
+                                   .is_joint = true,
                                    .is_flipped = !against,
                                    .from = against ? 1 : 0,
                                    .by = against ? -1 : 1};

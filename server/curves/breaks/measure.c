@@ -33,6 +33,14 @@ static double gauss_weight(int i)
     return 0.5 * GAUSS_WEIGHT[i < N_GAUSS / 2 ? N_GAUSS / 2 - 1 - i : i - N_GAUSS / 2];
 }
 
+/* An edge that is measured at many places. */
+struct walk {
+    const struct break_setup *setup;
+    const struct surface_edge *edge;
+    double length;
+    struct limit_patch patch[2]; /* the latest of each side, whose points need not be made again */
+};
+
 /* --- one side of an edge at one place */
 
 struct side {
@@ -54,34 +62,36 @@ static void solve(const struct limit_point *point, struct vec tangent, double ou
     out[1] = (e * q - f * p) / det;
 }
 
-/* Fills in a side at `at` of an edge, `inside` parts of the face away from it. The first tangent points to the next
- * corner. False where there is no normal. */
-static bool side_at(const struct limit_tables *tables, uint32_t face, unsigned edge, double at,
-                    double inside, struct side *side)
+/* Fills in side i at `at` of its own edge, `inside` parts of the face away from it. The first tangent points to the
+ * next corner. False where there is no normal. */
+static bool side_at(struct walk *walk, int i, double at, double inside, struct side *side)
 {
-    const struct limit_place place = {.node = face, .corner = edge, .a = at, .b = inside};
+    const struct limit_tables *tables = walk->setup->tables;
+    const struct limit_place place = {walk->edge->face[i], walk->edge->edge[i], at, inside};
     struct limit_point point;
-    if (!limit_evaluate_at(tables, &place, &point) || !point.has_normal)
+    if (!limit_patch_find_again(tables, &place, &walk->patch[i]))
+        return false;
+    limit_patch_evaluate(tables, &walk->patch[i], &point);
+    if (!point.has_normal)
         return false;
     *side = (struct side){.x = point.s, .n = point.n, .speed = vec_length(point.su)};
     side->along[0] = vec_unit(point.su);
     side->along[1] = vec_cross(point.n, side->along[0]);
     double area = vec_length(vec_cross(point.su, point.sv));
     side->has_curvature = area > 1e-9 * side->speed * vec_length(point.sv);
-    for (int i = 0; i < 2 && side->has_curvature; i++) {
-        double w[2];
-        solve(&point, side->along[i], w);
+    for (int t = 0; t < 2 && side->has_curvature; t++) {
+        double w[2], on[2], k[2];
+        solve(&point, side->along[t], w);
         /* The part of the second form along each derivative; the normal turns against it. */
-        double to_u = w[0] * point.luu + w[1] * point.luv,
-               to_v = w[0] * point.luv + w[1] * point.lvv;
-        double on[2], k[2];
+        double to_u = w[0] * point.luu + w[1] * point.luv;
+        double to_v = w[0] * point.luv + w[1] * point.lvv;
         for (int j = 0; j < 2; j++) {
             solve(&point, side->along[j], on);
             k[j] = on[0] * to_u + on[1] * to_v;
         }
-        side->turn[i] =
+        side->turn[t] =
             vec_scale(vec_mad(vec_scale(side->along[0], k[0]), k[1], side->along[1]), -1);
-        if (i == 1)
+        if (t == 1)
             side->across = k[1];
     }
     return true;
@@ -164,18 +174,23 @@ static void measure_light(const struct break_setup *setup, uint8_t index,
     }
 }
 
-/* The distance of both curves: from the first side's point to the nearest one of the second side's curve. */
-static double gap_at(const struct break_setup *setup, const struct surface_edge *edge, double at,
-                     struct vec x, struct side *second)
+/* The place of the second side at `at` of the first one. */
+static double place_there(const struct surface_edge *edge, double at)
 {
-    double there = edge->from + edge->by * at;
+    return edge->from + edge->by * at;
+}
+
+/* The distance of both sides. Inside one cage both have one curve, by the same parameter. At a joint it is the distance
+ * from the first side's point to the nearest one of the second side's curve, to which *second moves. */
+static double gap_at(struct walk *walk, double at, struct vec x, struct side *second)
+{
+    double there = place_there(walk->edge, at);
     struct side best = *second;
-    for (int step = 0; step < 8; step++) {
+    for (int step = 0; step < 8 && walk->edge->is_joint; step++) {
         struct vec between = vec_sub(x, best.x);
         double move = vec_dot(between, best.along[0]) / best.speed;
         double next = fmin(fmax(there + move, 0), 1);
-        if (!(best.speed > 0) || next == there ||
-            !side_at(setup->tables, edge->face[1], edge->edge[1], next, 0, &best))
+        if (!(best.speed > 0) || next == there || !side_at(walk, 1, next, 0, &best))
             break;
         if (vec_length(vec_sub(x, best.x)) > vec_length(vec_sub(x, second->x)))
             break; /* the curve bends away: the first point was nearer */
@@ -196,17 +211,14 @@ static void measure_curvature(const struct side sides[2], double length, struct 
 
 /* Both sides of an edge of smooth surface: of a semi-sharp crease. The surface has no break there; so the normals are
  * those on both sides of the crease's rounding, and curvature is compared between the crease and there. */
-static bool measure_rounding(const struct break_setup *setup, const struct surface_edge *edge,
-                             double at, double length, struct both *both)
+static bool measure_rounding(struct walk *walk, double at, struct both *both)
 {
+    const struct surface_edge *edge = walk->edge;
     const double width = ldexp(1, -edge->levels);
     struct side middle, beside[2];
-    for (int i = 0; i < 2; i++)
-        if (!side_at(setup->tables, edge->face[i], edge->edge[i],
-                     i ? edge->from + edge->by * at : at, i ? width * fabs(edge->by) : width,
-                     &beside[i]))
-            return false;
-    if (!side_at(setup->tables, edge->face[0], edge->edge[0], at, 0, &middle))
+    if (!side_at(walk, 0, at, width, &beside[0]) ||
+        !side_at(walk, 1, place_there(edge, at), width * fabs(edge->by), &beside[1]) ||
+        !side_at(walk, 0, at, 0, &middle))
         return false;
     both->x = middle.x;
     both->speed = middle.speed;
@@ -215,33 +227,32 @@ static bool measure_rounding(const struct break_setup *setup, const struct surfa
     if (fabs(beside[1].across - middle.across) > fabs(beside[0].across - middle.across))
         pair[1] = beside[1];
     if (at >= LEAST_AT && at <= 1 - LEAST_AT)
-        measure_curvature(pair, length, both);
+        measure_curvature(pair, walk->length, both);
     return true;
 }
 
-static bool measure_at(const struct break_setup *setup, const struct surface_edge *edge, double at,
-                       double length, struct both *both)
+static bool measure_at(struct walk *walk, double at, bool with_lights, struct both *both)
 {
+    const struct break_setup *setup = walk->setup;
+    struct side sides[2];
     *both = (struct both){.shift = NAN};
     for (int i = 0; i < BREAK_MEASURES; i++)
         both->value[i] = NAN;
-    if (edge->levels != LIMIT_BORDER_SHARP)
-        return measure_rounding(setup, edge, at, length, both);
-    struct side sides[2];
-    for (int i = 0; i < 2; i++)
-        if (!side_at(setup->tables, edge->face[i], edge->edge[i],
-                     i ? edge->from + edge->by * at : at, 0, &sides[i]))
-            return false;
+    if (walk->edge->levels != LIMIT_BORDER_SHARP)
+        return measure_rounding(walk, at, both);
+    if (!side_at(walk, 0, at, 0, &sides[0]) ||
+        !side_at(walk, 1, place_there(walk->edge, at), 0, &sides[1]))
+        return false;
     both->x = sides[0].x;
     both->speed = sides[0].speed;
-    both->value[BREAK_GAP] = gap_at(setup, edge, at, sides[0].x, &sides[1]);
-    if (edge->is_flipped)
+    both->value[BREAK_GAP] = gap_at(walk, at, sides[0].x, &sides[1]);
+    if (walk->edge->is_flipped)
         flip(&sides[1]);
     both->value[BREAK_ANGLE] = angle_between(sides[0].n, sides[1].n);
     if (at < LEAST_AT || at > 1 - LEAST_AT)
         return true;
-    measure_curvature(sides, length, both);
-    for (uint32_t i = 0; i < setup->n_lights; i++)
+    measure_curvature(sides, walk->length, both);
+    for (uint32_t i = 0; i < setup->n_lights && with_lights; i++)
         measure_light(setup, (uint8_t)i, sides, both);
     return true;
 }
@@ -264,37 +275,35 @@ static void keep_worst(struct break_edge *out, int measure, double at, const str
 }
 
 /* The value of a measure at a place, which is kept if it is the worst one. Below 0: none. */
-static double probe(const struct break_setup *setup, const struct surface_edge *edge, int measure,
-                    double at, struct break_edge *out)
+static double probe(struct walk *walk, int measure, double at, struct break_edge *out)
 {
     struct both both;
-    if (!measure_at(setup, edge, at, out->length, &both) || isnan(both.value[measure]))
+    if (!measure_at(walk, at, measure >= BREAK_KINK, &both) || isnan(both.value[measure]))
         return -1;
     keep_worst(out, measure, at, &both);
     return both.value[measure];
 }
 
 /* Looks for the largest value of a measure between two places by golden section search, to 1e-4 of their distance. */
-static void refine(const struct break_setup *setup, const struct surface_edge *edge, int measure,
-                   double low, double high, struct break_edge *out)
+static void refine(struct walk *walk, int measure, double low, double high, struct break_edge *out)
 {
     const double part = 0.6180339887498949;
     double left = high - part * (high - low), right = low + part * (high - low);
-    double at_left = probe(setup, edge, measure, left, out);
-    double at_right = probe(setup, edge, measure, right, out);
+    double at_left = probe(walk, measure, left, out);
+    double at_right = probe(walk, measure, right, out);
     for (int step = 0; step < GOLDEN_STEPS; step++) {
         if (at_left >= at_right) {
             high = right;
             right = left;
             at_right = at_left;
             left = high - part * (high - low);
-            at_left = probe(setup, edge, measure, left, out);
+            at_left = probe(walk, measure, left, out);
         } else {
             low = left;
             left = right;
             at_left = at_right;
             right = low + part * (high - low);
-            at_right = probe(setup, edge, measure, right, out);
+            at_right = probe(walk, measure, right, out);
         }
     }
 }
@@ -354,12 +363,11 @@ struct sampled {
 };
 
 /* Samples an edge: keeps the worst of all places. False if no place can be measured. */
-static bool sample(const struct break_setup *setup, const struct surface_edge *edge,
-                   struct break_edge *out, struct sampled *sampled)
+static bool sample(struct walk *walk, struct break_edge *out, struct sampled *sampled)
 {
     bool any = false;
     for (int i = 0; i < N_PLACES; i++) {
-        sampled->any[i] = measure_at(setup, edge, place_at(i), out->length, &sampled->at[i]);
+        sampled->any[i] = measure_at(walk, place_at(i), true, &sampled->at[i]);
         for (int m = 0; m < BREAK_MEASURES && sampled->any[i]; m++)
             keep_worst(out, m, place_at(i), &sampled->at[i]);
         any = any || sampled->any[i];
@@ -393,8 +401,7 @@ static double sampled_value(const struct sampled *sampled, int measure, int i)
 }
 
 /* Looks for the worst place about each local maximum of the samples that could hold it. */
-static void refine_all(const struct break_setup *setup, const struct surface_edge *edge,
-                       const struct sampled *sampled, struct break_edge *out)
+static void refine_all(struct walk *walk, const struct sampled *sampled, struct break_edge *out)
 {
     for (int m = 0; m < BREAK_MEASURES; m++) {
         const double least = out->worst[m].value / 2; /* a peak between samples is rarely higher */
@@ -403,8 +410,8 @@ static void refine_all(const struct break_setup *setup, const struct surface_edg
             bool is_peak = value > 0 && value >= sampled_value(sampled, m, i - 1) &&
                            value >= sampled_value(sampled, m, i + 1);
             if (is_peak && value >= least)
-                refine(setup, edge, m, place_at(i > 0 ? i - 1 : 0),
-                       place_at(i < N_PLACES - 1 ? i + 1 : i), out);
+                refine(walk, m, place_at(i > 0 ? i - 1 : 0), place_at(i < N_PLACES - 1 ? i + 1 : i),
+                       out);
         }
     }
 }
@@ -421,9 +428,10 @@ bool breaks_measure_edge(const struct break_setup *setup, const struct surface_e
     for (int m = 0; m < BREAK_MEASURES; m++)
         out->worst[m] = (struct break_worst){NAN, NAN, {NAN, NAN, NAN}};
     out->length = length_of(setup->tables, edge->face[0], edge->edge[0]);
-    if (!(out->length > 0) || !sample(setup, edge, out, &sampled))
+    struct walk walk = {.setup = setup, .edge = edge, .length = out->length};
+    if (!(out->length > 0) || !sample(&walk, out, &sampled))
         return false;
-    refine_all(setup, edge, &sampled, out);
+    refine_all(&walk, &sampled, out);
     if (kind == BREAK_SEMISHARP)
         return true;
     out->out_length = out_length(setup, &sampled);
