@@ -545,6 +545,60 @@ class Computations(DaemonCase):
             self.assertEqual(closed.vertices["faces"].tolist(), [3] * 8)
 
 
+class Comparisons(DaemonCase):
+    def test_a_moved_vertex(self):
+        """A regular vertex takes the surface with it by 4/9 of its way."""
+        flat = re.sub(rb"(v \S+ \S+) \S+", rb"\1 0", grid(6))
+        rows = flat.split(b"\n")
+        rows[24] = rows[24].rsplit(b" ", 1)[0] + b" 0.001"  # inside
+        told = []
+        with sheen.connect(self.daemon.unix) as session:
+            old, new = session.upload(flat, "old.obj"), session.upload(b"\n".join(rows), "new.obj")
+            found = session.compare(old, new, samples=20000, limits={"distance": 1e-5, "curvature": 0.1},
+                                    progress=lambda *each: told.append(each))
+            self.assertTrue(found.differs)
+            self.assertEqual((found.limits["distance"], found.limits["curvature"]), (1e-5, 0.1))
+            self.assertAlmostEqual(found.worst("distance").worst, 0.001 * 4 / 9, delta=1e-6)
+            self.assertAlmostEqual(found.worst("distance").new.position[2], 0.001 * 4 / 9, delta=1e-6)
+            self.assertGreater(found.old.distance.area_out, 0)
+            self.assertLessEqual({"distance", "normal_deg", "lines", "curvature"}, set(found.new.measures))
+            same = session.compare(old, old, samples=20000, align=True)
+            self.assertFalse(same.differs)
+            self.assertEqual((same.worst("distance").worst, same.worst("normal_deg").worst), (0, 0))
+            self.assertIsNone(same.worst("curvature"))  # nobody asked
+            self.assertTrue(np.allclose(same.alignment.rotation, np.eye(3), atol=1e-9))
+            self.assertIsNone(found.alignment)
+            self.assertAlmostEqual(same.old.area, same.new.area)
+            with self.assertRaisesRegex(sheen.BadArgument, "no measure normal"):
+                session.compare(old, new, limits={"normal": 1})
+            for limits in ({"distance": -1}, {"normal_deg": 181}, {"lines": float("nan")}):
+                with self.assertRaises(sheen.BadRequest):
+                    session.compare(old, new, limits=limits)
+            session.render(old, size=(8, 8))  # the session goes on
+
+    def test_a_missing_face(self):
+        with tempfile.TemporaryDirectory(prefix="sheen-test-") as folder:
+            paths = []
+            flat = re.sub(rb"(v \S+ \S+) \S+", rb"\1 0", grid(6))
+            for name, data in (("whole.obj", flat), ("open.obj", flat[:flat.rindex(b"f ")])):
+                paths.append(os.path.join(folder, name))
+                with open(paths[-1], "wb") as file:
+                    file.write(data)
+            before = os.environ.get("SHEEN_SERVER")
+            os.environ["SHEEN_SERVER"] = self.daemon.unix
+            try:
+                found = sheen.compare(*paths, samples=20000)
+            finally:
+                os.environ.pop("SHEEN_SERVER")
+                if before is not None:
+                    os.environ["SHEEN_SERVER"] = before
+        self.assertTrue(found.differs)
+        self.assertTrue(0.3 < found.old.area_uncovered < 1.2, found.old)
+        self.assertIsNotNone(found.old.uncovered)
+        self.assertEqual(found.new.area_uncovered, 0)
+        self.assertAlmostEqual(found.old.area - found.new.area, found.old.area_uncovered, delta=0.05)
+
+
 class Loss(unittest.TestCase):
     def private(self, **options):
         return sheen.connect(sheend=SHEEND, device=DEVICE, **options)
@@ -690,6 +744,7 @@ class Hostile(unittest.TestCase):
         frames += session.stream(model, [{"view": "left"}, {"view": "top", "show": "mean"}], size=(8, 8))
         session.stats()
         session.breaks(session.upload(folded(30), "fold.obj"))
+        session.compare(model, session.upload(folded(30), "fold.obj"), samples=2000)
         return info, frames
 
     def work_with(self, relay):
@@ -700,7 +755,7 @@ class Hostile(unittest.TestCase):
         """Without a fault the work succeeds, so that faults are what makes it fail."""
         kinds = {kind for kind, _, _ in self.messages}
         self.assertLessEqual({wire.HELLO_OK, wire.UPLOAD_STATE, wire.MODEL_INFO, wire.FRAME, wire.DATA, wire.STATS,
-                              wire.BREAKS}, kinds)
+                              wire.BREAKS, wire.COMPARED}, kinds)
         with FakeServer(self.answers) as server:
             info, frames = self.work_with(server)
         self.assertEqual((info.faces, len(frames)), (6, 5))

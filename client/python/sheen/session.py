@@ -10,6 +10,7 @@ import numpy as np
 
 from sheen import files, header, messages, picks, planes
 from sheen.breaks import Breaks
+from sheen.comparison import Comparison, Limits
 from sheen.connection import Connection, connect
 from sheen.daemon import PrivateDaemon
 from sheen.errors import (BadArgument, BadImage, BadModel, BadPeer, BadRequest, BadVersion, Cancelled, DeviceFailed,
@@ -476,6 +477,8 @@ class Session:
         body = self._expect(seq, want, cls, progress)
         try:
             size = size_of(body)
+            if size > header.MAX_FRAME_BYTES:
+                raise Malformed(f"{size} bytes of records; there may be {header.MAX_FRAME_BYTES}")
         except Malformed as wrong:
             raise self._bad_peer(f"{want.name}: {wrong}") from None
         return body, self._read_data(seq, size)
@@ -493,6 +496,26 @@ class Session:
             return Breaks.of(body, data)
         except Malformed as wrong:
             raise self._bad_peer(f"BREAKS: {wrong}") from None
+
+    def compare(self, old: Model | PathOrBytes, new: Model | PathOrBytes, *, limits: Limits | None = None,
+                align: bool = False, samples: int | None = None, progress: Progress | None = None,
+                **options: Unpack[Options]) -> Comparison:
+        """Compares two surfaces by samples in both directions. `align` first moves the new surface onto the old one. The
+        other options tell the camera, lights and lines of which shifts are measured, and `deadline`."""
+        given = limits or {}
+        unknown = sorted(set(given) - set(Limits.__annotations__))
+        if unknown:
+            raise BadArgument(f"there is no measure {', '.join(unknown)}; there are {', '.join(Limits.__annotations__)}")
+        scene = self._scene(old, options)
+        asked = messages.Compare(scene=scene, new_sha256=self._id_of(new), align=True if align else None, samples=samples,
+                                 distance=given.get("distance"), normal_deg=given.get("normal_deg"),
+                                 lines=given.get("lines"), line_length=given.get("line_length"),
+                                 curvature=given.get("curvature"))
+        body, _ = self._compute(Type.COMPARE, asked, Type.COMPARED, messages.Compared, lambda _: 0, progress)
+        try:
+            return Comparison.of(body)
+        except Malformed as wrong:
+            raise self._bad_peer(f"COMPARED: {wrong}") from None
 
     def _drop(self, waiting: Sequence[int]) -> None:
         """Takes back the requests that are still in flight."""
