@@ -19,11 +19,11 @@ from daemon import BUILD, MODELS, SANITIZED, SHEEN, Daemon
 ROOT = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."))
 PREFIX, LIBDIR = "/opt/sheen", "/opt/sheen/lib/here"
 PYTHON = f"lib/python3.{sys.version_info.minor}/dist-packages"
-MODULES = ("__init__", "__main__", "breaks", "comparison", "connection", "daemon", "errors", "files", "frame", "header",
-           "messages", "options", "picks", "planes", "protobuf", "scene", "session", "values", "version")
+MODULES = ("__init__", "__main__", "breaks", "comparison", "connection", "curves", "daemon", "errors", "files", "frame",
+           "header", "messages", "options", "picks", "planes", "protobuf", "scene", "session", "values", "version")
 EXAMPLES = os.path.join(ROOT, "client", "examples")
 STRICT = ["-Wall", "-Wextra", "-pedantic", "-Werror"]
-COMMANDS = ("breaks", "compare", "info", "levels", "lights", "patterns", "pick", "render", "stats", "stream")
+COMMANDS = ("breaks", "compare", "info", "levels", "lights", "lines", "patterns", "pick", "render", "stats", "stream")
 
 with open(os.path.join(ROOT, "Makefile"), encoding="utf-8") as _file:
     VERSION = re.search(r"^VERSION := (.*)$", _file.read(), re.M).group(1)

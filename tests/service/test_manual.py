@@ -12,7 +12,7 @@ import unittest
 from daemon import BUILD, SHEEN, SHEEND
 
 MANUAL = os.path.join(BUILD, "manual")
-COMMANDS = ("breaks", "compare", "info", "levels", "lights", "patterns", "pick", "render", "stats", "stream")
+COMMANDS = ("breaks", "compare", "info", "levels", "lights", "lines", "patterns", "pick", "render", "stats", "stream")
 
 
 def read(name):

@@ -599,6 +599,35 @@ class Comparisons(DaemonCase):
         self.assertAlmostEqual(found.old.area - found.new.area, found.old.area_uncovered, delta=0.05)
 
 
+class Curves(DaemonCase):
+    def test_lines(self):
+        with sheen.connect(self.daemon.unix) as session:
+            model = session.upload(FENDER)
+            found = session.lines(model, pattern="stripes:count=20")
+            self.assertGreater(len(found), 3)
+            self.assertEqual({(curve.kind, curve.light) for curve in found.curves}, {("line", 0)})
+            for curve in found.curves:
+                points = curve.points
+                self.assertGreaterEqual(len(points), 2)
+                self.assertLess(np.nanmax(abs(points["residual"])), 1e-9)
+                steps = np.linalg.norm(np.diff(points["position"], axis=0), axis=1)
+                if not curve.closed:
+                    self.assertAlmostEqual(steps.sum(), curve.length, delta=1e-6)
+                self.assertTrue(np.allclose(points["length"][1:], np.cumsum(steps), atol=1e-6))
+                self.assertTrue(np.allclose(np.linalg.norm(points["normal"], axis=1), 1))
+                self.assertAlmostEqual((curve.place * 20 - 0.25) % 1, 0, delta=1e-9)  # the middle of a bright stripe
+            other = session.lines(model, at=[curve.place for curve in found.curves[:1]], tolerance=1)
+            self.assertEqual({curve.place for curve in other.curves}, {found.curves[0].place})
+            self.assertEqual(other.tolerance, 1)
+            self.assertLess(sum(len(curve.points) for curve in other.curves), sum(len(curve.points) for curve in found.curves))
+            outline = session.lines(session.upload(CUBE, "cube.obj"), silhouettes=True)
+            self.assertEqual([(curve.kind, math.isnan(curve.place)) for curve in outline.curves], [("silhouette", True)])
+            for options in ({"tolerance": -1.0}, {"at": [0.5] * 257}, {"pattern": "rainbow"}):
+                with self.assertRaises((sheen.BadRequest, sheen.BadArgument)):
+                    session.lines(model, **options)
+            session.render(model, size=(8, 8))  # the session goes on
+
+
 class Loss(unittest.TestCase):
     def private(self, **options):
         return sheen.connect(sheend=SHEEND, device=DEVICE, **options)
@@ -745,6 +774,7 @@ class Hostile(unittest.TestCase):
         session.stats()
         session.breaks(session.upload(folded(30), "fold.obj"))
         session.compare(model, session.upload(folded(30), "fold.obj"), samples=2000)
+        session.lines(model, at=[0.3], tolerance=0.05)
         return info, frames
 
     def work_with(self, relay):
@@ -755,7 +785,7 @@ class Hostile(unittest.TestCase):
         """Without a fault the work succeeds, so that faults are what makes it fail."""
         kinds = {kind for kind, _, _ in self.messages}
         self.assertLessEqual({wire.HELLO_OK, wire.UPLOAD_STATE, wire.MODEL_INFO, wire.FRAME, wire.DATA, wire.STATS,
-                              wire.BREAKS, wire.COMPARED}, kinds)
+                              wire.BREAKS, wire.COMPARED, wire.CURVES}, kinds)
         with FakeServer(self.answers) as server:
             info, frames = self.work_with(server)
         self.assertEqual((info.faces, len(frames)), (6, 5))

@@ -14,6 +14,7 @@ from typing import Unpack
 
 from sheen.breaks import Breaks
 from sheen.comparison import Comparison, Limits
+from sheen.curves import Curve, Curves
 from sheen.errors import (BadArgument, BadImage, BadModel, BadPeer, BadRequest, BadVersion, Cancelled, DeviceFailed,
                           Error, GpuLost, Late, Lost, NoServer, Overloaded, ShuttingDown, Superseded, Timeout, TooBig,
                           UnknownModel)
@@ -36,7 +37,7 @@ def compare(old: PathOrBytes, new: PathOrBytes, *, limits: Limits | None = None,
         return session.compare(old, new, limits=limits, align=align, samples=samples, **options)
 
 __all__ = ["BadArgument", "BadImage", "BadModel", "BadPeer", "BadRequest", "BadVersion", "Breaks", "Camera",
-           "Cancelled", "Comparison", "DeviceFailed", "Error", "Extreme", "Frame", "GpuLost", "HelloOk", "Late",
-           "Light", "Limits", "Lines", "Lost", "Model", "ModelInfo", "NoServer", "Options", "Overloaded", "PLANES",
-           "Pattern", "Pick", "Section", "Session", "ShuttingDown", "Stats", "Superseded", "Timeout", "Times",
-           "TooBig", "UnknownModel", "__version__", "compare", "connect"]
+           "Cancelled", "Comparison", "Curve", "Curves", "DeviceFailed", "Error", "Extreme", "Frame", "GpuLost",
+           "HelloOk", "Late", "Light", "Limits", "Lines", "Lost", "Model", "ModelInfo", "NoServer", "Options",
+           "Overloaded", "PLANES", "Pattern", "Pick", "Section", "Session", "ShuttingDown", "Stats", "Superseded",
+           "Timeout", "Times", "TooBig", "UnknownModel", "__version__", "compare", "connect"]

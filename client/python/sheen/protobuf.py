@@ -166,6 +166,12 @@ def encode(message: Message) -> bytes:
             continue
         if row.most is not None and len(value) > row.most:
             raise Malformed(f"{row.name} has {len(value)} entries; it may have at most {row.most}")
+        if not isinstance(row.kind, type) and WIRE_TYPES[row.kind] != BYTES:
+            # Numbers are packed into one field, as in the examples of the specification.
+            head = len(varint(row.number << 3))
+            packed = b"".join(_encode_value(row, entry)[head:] for entry in value)
+            out += field(row.number, packed) if value else b""
+            continue
         for entry in value:
             out += _encode_value(row, entry)
     return bytes(out)

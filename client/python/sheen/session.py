@@ -12,6 +12,7 @@ from sheen import files, header, messages, picks, planes
 from sheen.breaks import Breaks
 from sheen.comparison import Comparison, Limits
 from sheen.connection import Connection, connect
+from sheen.curves import Curves
 from sheen.daemon import PrivateDaemon
 from sheen.errors import (BadArgument, BadImage, BadModel, BadPeer, BadRequest, BadVersion, Cancelled, DeviceFailed,
                           Error, GpuLost, Late, Lost, Overloaded, ShuttingDown, Superseded, TooBig, UnknownModel)
@@ -21,7 +22,7 @@ from sheen.options import Options, check_names, lights_and_lines, render_message
 from sheen.picks import Pick, Section
 from sheen.protobuf import M, Malformed, Message, decode, encode
 from sheen.scene import Camera, Pattern
-from sheen.values import size
+from sheen.values import number, size
 
 Progress = Callable[[str, int, int], None]
 PathOrBytes = Union[str, "os.PathLike[str]", bytes]
@@ -516,6 +517,18 @@ class Session:
             return Comparison.of(body)
         except Malformed as wrong:
             raise self._bad_peer(f"COMPARED: {wrong}") from None
+
+    def lines(self, model: Model | PathOrBytes, *, tolerance: float | None = None, at: Sequence[float] = (),
+              silhouettes: bool = False, progress: Progress | None = None, **options: Unpack[Options]) -> Curves:
+        """Traces lines on the surface as curves. `at`: places on each light; default: those of its pattern. `tolerance`:
+        the greatest distance of a curve from its chords. `silhouettes`: those of the eye, instead of lines."""
+        asked = messages.TraceLines(scene=self._scene(model, options), tolerance=tolerance,
+                                    at=[number(place, "at") for place in at], silhouettes=True if silhouettes else None)
+        body, data = self._compute(Type.TRACE_LINES, asked, Type.CURVES, messages.Curves, Curves.data_bytes, progress)
+        try:
+            return Curves.of(body, data)
+        except Malformed as wrong:
+            raise self._bad_peer(f"CURVES: {wrong}") from None
 
     def _drop(self, waiting: Sequence[int]) -> None:
         """Takes back the requests that are still in flight."""
