@@ -2,8 +2,6 @@
  *
  * A frame of one pixel, a part of the picture, has these numbers bit by bit as the planes of the
  * whole picture have them. */
-#include <inttypes.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,9 +10,8 @@
 #include "client/cli/client.h"
 #include "client/cli/commands.h"
 #include "client/cli/options/values.h"
+#include "client/cli/output/pick.h"
 #include "client/cli/output/scene_json.h"
-
-#define NO_FACE UINT32_MAX
 
 enum {
     POSITION_BIT = 1,
@@ -27,13 +24,6 @@ enum {
     (SHEEN_PLANE_POSITION | SHEEN_PLANE_NORMAL | SHEEN_PLANE_PTEX | SHEEN_PLANE_LIGHT |            \
      SHEEN_PLANE_CURVATURE)
 
-/* The numbers at a place of the picture; NaN where there are none. */
-struct pick {
-    double x, y;   /* px; whole numbers are centres of pixels */
-    uint32_t face; /* Ptex; NO_FACE: no surface is there */
-    float uv[2], point[3], normal[3], curvature[2], light[2];
-};
-
 /* The picks in the order of their places, and as far as they are sent and answered. */
 struct picks {
     size_t n, n_sent, n_answered;
@@ -41,27 +31,6 @@ struct picks {
     struct sheen_request request;
     struct sheen_frame frame; /* the latest */
 };
-
-static bool has_surface(const struct pick *pick)
-{
-    return pick->face != NO_FACE;
-}
-
-static double mean(const struct pick *pick)
-{
-    return 0.5 * ((double)pick->curvature[0] + (double)pick->curvature[1]);
-}
-
-static double gaussian(const struct pick *pick)
-{
-    return (double)pick->curvature[0] * (double)pick->curvature[1];
-}
-
-/* The smallest radius of curvature in any direction; infinite where the surface is flat. */
-static double radius(const struct pick *pick)
-{
-    return 1 / fmax(fabs((double)pick->curvature[0]), fabs((double)pick->curvature[1]));
-}
 
 static enum sheen_status send_pick(struct client *client, struct picks *picks)
 {
@@ -112,104 +81,6 @@ static enum sheen_status ask(struct client *client, const struct options *option
     return status;
 }
 
-static void print_floats(const char *name, const float *value, size_t n)
-{
-    printf("%-16s", name);
-    for (size_t i = 0; i < n; i++)
-        printf(" %.9g", (double)value[i]);
-    putchar('\n');
-}
-
-static void print_table(const struct pick *pick)
-{
-    printf("%-16s %.9g %.9g\n", "pixel", pick->x, pick->y);
-    if (!has_surface(pick)) {
-        puts("nothing there   no surface is visible at this place");
-        return;
-    }
-    print_floats("point", pick->point, 3);
-    if (isnan(pick->normal[0])) {
-        puts("normal           none");
-    } else {
-        print_floats("normal", pick->normal, 3);
-        print_floats("curvatures", pick->curvature, 2);
-        printf("%-16s %.9g\n%-16s %.9g\n", "mean", mean(pick), "gaussian", gaussian(pick));
-        if (isinf(radius(pick)))
-            puts("radius           none, flat");
-        else
-            printf("%-16s %.9g\n", "radius", radius(pick));
-    }
-    printf("%-16s %" PRIu32 "\n", "face", pick->face);
-    print_floats("u v", pick->uv, 2);
-    if (isnan(pick->light[0]))
-        puts("light            not met");
-    else
-        print_floats("light", pick->light, 2);
-}
-
-/* Writes a field of a CSV line; nothing for NaN. */
-static void print_field(double value)
-{
-    if (isnan(value))
-        putchar(',');
-    else
-        printf(",%.9g", value);
-}
-
-static void print_csv(const struct picks *picks)
-{
-    puts("x,y,point.x,point.y,point.z,normal.x,normal.y,normal.z,k.min,k.max,radius,face,u,v,"
-         "light.s,light.t");
-    for (size_t i = 0; i < picks->n; i++) {
-        const struct pick *pick = &picks->pick[i];
-        bool is_there = has_surface(pick);
-        printf("%.17g,%.17g", pick->x, pick->y);
-        for (int k = 0; k < 3; k++)
-            print_field((double)pick->point[k]);
-        for (int k = 0; k < 3; k++)
-            print_field((double)pick->normal[k]);
-        for (int k = 0; k < 2; k++)
-            print_field((double)pick->curvature[k]);
-        print_field(radius(pick));
-        print_field(is_there ? pick->face : NAN);
-        for (int k = 0; k < 2; k++)
-            print_field(is_there ? (double)pick->uv[k] : (double)NAN);
-        for (int k = 0; k < 2; k++)
-            print_field((double)pick->light[k]);
-        putchar('\n');
-    }
-}
-
-static void json_floats(struct json *json, const char *key, const float *value, size_t n)
-{
-    json_array_begin(json, key);
-    for (size_t i = 0; i < n; i++)
-        json_double(json, NULL, (double)value[i]);
-    json_array_end(json);
-}
-
-static void json_pick(struct json *json, const struct pick *pick)
-{
-    json_double(json, "x", pick->x);
-    json_double(json, "y", pick->y);
-    json_bool(json, "hit", has_surface(pick));
-    if (!has_surface(pick))
-        return;
-    json_floats(json, "point", pick->point, 3);
-    if (!isnan(pick->normal[0])) {
-        json_floats(json, "normal", pick->normal, 3);
-        json_double(json, "k_min", (double)pick->curvature[0]);
-        json_double(json, "k_max", (double)pick->curvature[1]);
-        json_double(json, "mean", mean(pick));
-        json_double(json, "gaussian", gaussian(pick));
-        json_double(json, "radius", radius(pick));
-    }
-    json_uint(json, "face", pick->face);
-    json_floats(json, "uv", pick->uv, 2);
-    if (!isnan(pick->light[0]))
-        json_floats(json, "light_st", pick->light, 2);
-}
-
 static void print_json(struct json *json, const struct options *options,
                        const struct client *client, const struct picks *picks)
 {
@@ -218,12 +89,12 @@ static void print_json(struct json *json, const struct options *options,
         json_array_begin(json, "samples");
         for (size_t i = 0; i < picks->n; i++) {
             json_object_begin(json, NULL);
-            json_pick(json, &picks->pick[i]);
+            pick_json(json, &picks->pick[i]);
             json_object_end(json);
         }
         json_array_end(json);
     } else {
-        json_pick(json, &picks->pick[0]);
+        pick_json(json, &picks->pick[0]);
     }
     json_uint(json, "width", options->request.width_px);
     json_uint(json, "height", options->request.height_px);
@@ -242,9 +113,9 @@ static enum sheen_status print(struct client *client, const struct options *opti
         return client_finish_json(client, &json);
     }
     if (options->has_section)
-        print_csv(picks);
+        pick_print_csv(picks->pick, picks->n);
     else
-        print_table(&picks->pick[0]);
+        pick_print_table(&picks->pick[0]);
     return SHEEN_OK;
 }
 
