@@ -50,6 +50,7 @@ room client/cli/files 'client/lib|client/cli/base|protocol' 'files as they are s
 room client/cli/options 'client/lib|protocol' 'the command line is data'
 cli='client/cli/base|client/cli/files|client/cli/options'
 room client/cli/output "client/lib|$cli|protocol" 'what an answer looks like, wherever it comes from'
+room client/cli/compare "client/cli|client/lib|$cli|client/cli/output|protocol" 'a command of several files; commands.h declares it'
 room client/cli "client/lib|$cli|client/cli/output|protocol" 'the command is libsheen'"'"'s first user'
 room client/cli/lines "client/cli|client/lib|$cli|client/cli/output|protocol" 'a command of several files'
 room deploy/manual 'client/cli|client/cli/options|client/lib|server/ops' 'manual pages are written from the tables of options'

@@ -3,13 +3,16 @@ numbers themselves are judged by tests/oracle/test_comparison.cpp."""
 import hashlib
 import json
 import os
+import shutil
 import subprocess
 import tempfile
 import unittest
 import xml.etree.ElementTree as xml
+from html.parser import HTMLParser
 
 import schema
 from daemon import CUBE, MODELS, SHEEN
+from png import read_png
 
 SCHEMAS = os.path.join(MODELS, "..", "..", "client", "schema")
 LIFT = 0.01
@@ -26,7 +29,7 @@ def sheet(lift=0.0, without=None):
 
 
 @unittest.skipUnless(os.path.exists(SHEEN), "no client in this build")
-class CompareCommand(unittest.TestCase):
+class Comparing(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         folder = tempfile.TemporaryDirectory()
@@ -34,8 +37,6 @@ class CompareCommand(unittest.TestCase):
         cls.folder = folder.name
         cls.flat = cls.write("flat.obj", sheet())
         cls.lifted = cls.write("lifted.obj", sheet(LIFT))
-        with open(os.path.join(SCHEMAS, "compare-1.json"), encoding="utf-8") as file:
-            cls.schema = json.load(file)
 
     @classmethod
     def write(cls, name, text):
@@ -49,6 +50,14 @@ class CompareCommand(unittest.TestCase):
         done = subprocess.run([SHEEN, "compare", *arguments, *FEW], capture_output=True, text=True, timeout=120)
         self.assertEqual(done.returncode, code, done.stderr)
         return done
+
+
+class CompareCommand(Comparing):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        with open(os.path.join(SCHEMAS, "compare-1.json"), encoding="utf-8") as file:
+            cls.schema = json.load(file)
 
     def json(self, *arguments, code):
         answer = json.loads(self.compare(*arguments, "--json", code=code).stdout)
@@ -164,6 +173,63 @@ class CompareCommand(unittest.TestCase):
         self.assertRegex(cases[0][0].get("message"), r"^distance 0\.0044.* units, limit .* at .*, face \d+, u ")
         deleted = [case for case in found["gone.obj"] if case.tag == "testcase"]
         self.assertIn("deleted", deleted[0][0].get("message"))
+
+
+class Page(HTMLParser):
+    """What a page refers to, and what a server that forbids scripts and inline styles would not show."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.files, self.forbidden, self.text = set(), [], ""
+        self.feed(text)
+
+    def handle_starttag(self, tag, attrs):
+        self.files |= {value for name, value in attrs if name == "src" or (tag, name) == ("link", "href")}
+        if tag in ("script", "style", "iframe") or any(name == "style" or name.startswith("on") for name, _ in attrs):
+            self.forbidden.append((tag, attrs))
+
+    def handle_data(self, data):
+        self.text += data
+
+
+def colours_of(path):
+    _, _, rows = read_png(path)
+    return {bytes(row[i:i + 3]) for row in rows for i in range(0, len(row), 3)}
+
+
+class Report(Comparing):
+    def report(self, *arguments, code):
+        folder = os.path.join(self.folder, "report")
+        shutil.rmtree(folder, ignore_errors=True)
+        self.compare(*arguments, "--report", folder, code=code)
+        with open(os.path.join(folder, "index.html"), encoding="utf-8") as file:
+            page = Page(file.read())
+        self.assertEqual(page.forbidden, [])
+        self.assertEqual(page.files | {"index.html"}, set(os.listdir(folder)))  # no other addresses either
+        return page, lambda name: colours_of(os.path.join(folder, name))
+
+    def test_pictures_of_a_change(self):
+        page, colours = self.report(self.flat, self.lifted, code=1)
+        self.assertEqual(len(page.files), 2 + 4 * 4)
+        self.assertIn("lifted.obj: differs", page.text)
+        for kind in ("angle", "distance"):
+            found = colours(f"p0-v0-{kind}.png")
+            self.assertTrue({b"\0\0\0", b"\xff\xff\xff", b"\x9a\x9a\x9a"} <= found, kind)
+
+    def test_maps_of_the_same_model_are_black(self):
+        page, colours = self.report(self.flat, self.flat, code=0)
+        self.assertIn("flat.obj: same", page.text)
+        self.assertEqual(colours("p0-v1-angle.png"), {b"\0\0\0", b"\x9a\x9a\x9a"})
+
+    def test_a_missing_face_is_magenta(self):
+        _, colours = self.report(self.flat, self.write("open.obj", sheet(without=(2, 2))), code=1)
+        self.assertIn(b"\xff\0\xff", colours("p0-v0-angle.png"))
+
+    def test_strange_names_and_bad_folders(self):
+        strange = self.write("a<b>&\"c\"'\x01.obj", sheet())
+        page, _ = self.report(self.flat, strange, code=0)
+        self.assertIn("a<b>&\"c\"'?.obj", page.text)
+        self.compare(self.flat, self.flat, "--report", os.path.join(self.folder, "no", "folder"), code=3)
 
 
 if __name__ == "__main__":

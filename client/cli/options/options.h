@@ -70,6 +70,7 @@ struct options {
     struct sheen_break_limits break_limits; /* breaks */
     const char *junit;                      /* file of a JUnit report; NULL: none */
     const char *markdown;                   /* compare: file of a summary; NULL: none */
+    const char *report;                     /* compare: folder; NULL: none */
     struct comparison_limit compare_limits[COMPARISON_ITEMS];
     bool align;                               /* compare */
     struct sheen_curve_options curve_options; /* lines; its `at` is not set */

@@ -13,6 +13,7 @@
 #include "client/cli/files/file.h"
 #include "client/cli/options/comparison_limits.h"
 #include "client/cli/output/comparison.h"
+#include "client/cli/compare/report.h"
 #include "protocol/model_format.h"
 
 enum { DIFFERS = 1, MOST_PAIRS = 10000 };
@@ -223,6 +224,9 @@ static enum sheen_status print(struct client *client, const struct options *opti
         char *text = comparison_markdown(pairs->list, pairs->n, &n_bytes);
         status = write_text(client, options->markdown, text, n_bytes);
     }
+    if (!status && options->report)
+        status = report_write(client, options, pairs->list, pairs->n);
+    progress_clear(&client->progress);
     if (!status && options->json) {
         struct json json = {.out = stdout};
         comparison_write_json(&json, pairs->list, pairs->n);
@@ -296,6 +300,12 @@ static bool apply_markdown(struct options *options, const char *value, char *why
     return *value || options_refuse(why, "must be a file");
 }
 
+static bool apply_report(struct options *options, const char *value, char *why)
+{
+    options->report = value;
+    return *value || options_refuse(why, "must be a folder");
+}
+
 static bool apply_deadline(struct options *options, const char *value, char *why)
 {
     return options_whole(&RANGES[RANGE_DEADLINE], value, &options->request.deadline_ms, why);
@@ -330,6 +340,10 @@ static const struct option_row ROWS[] = {
      apply_junit, NULL},
     {"markdown", 0, "FILE", "write a table in markdown, as for the summary of a job",
      apply_markdown, NULL},
+    {"report", 0, "FOLDER",
+     "write pages with pictures of both models in four views and maps of\n"
+     "their differences, which a browser shows without scripts",
+     apply_report, NULL},
     {"deadline", 0, "MS", "give up a pair after this time, {}\n(default: none)", apply_deadline,
      NULL},
     {0},
@@ -350,7 +364,7 @@ const struct command COMMAND_COMPARE = {
     .examples =
         "  sheen compare old/hood.obj new/hood.obj\n"
         "  sheen compare old.obj new.obj --limit distance=0.02 --limit normal_deg=0.05@0.1%\n"
-        "  sheen compare old new --junit junit.xml --markdown summary.md\n"
+        "  sheen compare old new --junit junit.xml --markdown summary.md --report report\n"
         "  sheen compare scan.obj hood.obj --align --limit lines=off --json\n",
     .takes_model = true,
     .takes_argument = true,
