@@ -17,6 +17,8 @@
 
 struct monitor {
     const struct daemon *daemon;
+    struct workers *workers;
+    const char *trouble;            /* of the workers, as logged last; NULL: none */
     uint64_t stuck_us, watchdog_us; /* watchdog_us is 0 without a watchdog */
     bool was_stuck;
     int timer_fd;
@@ -55,6 +57,11 @@ static int get(void *owner, const char *path, struct text_buffer *body)
                         (unsigned long long)(monitor->stuck_us / 1000000));
         return 503;
     }
+    const char *trouble = workers_trouble(monitor->workers);
+    if (trouble) {
+        text_buffer_add(body, "%s\n", trouble);
+        return 503;
+    }
     if (ready && monitor->daemon->sessions.draining) {
         text_buffer_add(body, "shutting down\n");
         return 503;
@@ -86,6 +93,18 @@ static void feed_watchdog(struct monitor *monitor)
     monitor->was_stuck = stuck != NULL;
 }
 
+/* Logs when a worker program begins or ceases to be in trouble. The watchdog is fed all the same: frames
+ * need no worker. */
+static void tell_trouble(struct monitor *monitor)
+{
+    const char *trouble = workers_trouble(monitor->workers);
+    if (trouble == monitor->trouble)
+        return;
+    monitor->trouble = trouble;
+    log_event(trouble ? LOG_ERROR : LOG_WARN, "worker programs",
+              log_text("text", trouble ? trouble : "well again"));
+}
+
 static void timer_ready(struct loop_source *source, uint32_t events)
 {
     (void)events;
@@ -94,6 +113,7 @@ static void timer_ready(struct loop_source *source, uint32_t events)
     if (read(monitor->timer_fd, &expirations, sizeof expirations) < 0)
         return;
     feed_watchdog(monitor);
+    tell_trouble(monitor);
     if (monitor->http)
         http_tick(monitor->http, clock_now_us());
     if (monitor->listener && listener_is_paused(monitor->listener))
@@ -116,7 +136,7 @@ static bool start_timer(struct monitor *monitor, struct error *error)
 
 /* --- its life */
 
-struct monitor *monitor_create(const struct daemon *daemon, uint64_t stuck_us, struct error *error)
+struct monitor *monitor_create(struct daemon *daemon, uint64_t stuck_us, struct error *error)
 {
     struct monitor *monitor = calloc(1, sizeof *monitor);
     if (!monitor) {
@@ -124,6 +144,7 @@ struct monitor *monitor_create(const struct daemon *daemon, uint64_t stuck_us, s
         return NULL;
     }
     monitor->daemon = daemon;
+    monitor->workers = &daemon->workers;
     monitor->stuck_us = stuck_us;
     monitor->watchdog_us = notify_watchdog_us();
     monitor->timer_fd = monitor->timer.fd = -1;

@@ -13,7 +13,7 @@ struct monitor;
 
 /* A thread that works on one task for longer than stuck_us counts as stuck. *daemon and everything
  * that it points to must stay valid until monitor_destroy(). NULL with ERROR_SERVER on failure. */
-struct monitor *monitor_create(const struct daemon *daemon, uint64_t stuck_us, struct error *error);
+struct monitor *monitor_create(struct daemon *daemon, uint64_t stuck_us, struct error *error);
 void monitor_destroy(struct monitor *monitor); /* NULL is safe */
 
 /* Serves GET /metrics, /healthz and /readyz without TLS: on a Unix socket, or on a TCP address

@@ -52,6 +52,10 @@ enum job_how {
     JOB_KILLED,    /* value: the signal */
     JOB_TIMED_OUT, /* value: 0; killed after limits.wall_s */
     JOB_NOT_RUN,   /* value: errno; no process could be started */
+    JOB_STOPPED,   /* value: 0; somebody had stopped the process, so it was killed */
+    /* value: 0; no end: the process runs. Sent when it is started and then every JOB_BEAT_MS, so that the
+     * daemon notices when the program itself is stopped. */
+    JOB_RUNNING,
     N_JOB_HOWS,
 };
 
@@ -60,6 +64,7 @@ struct job_end {
     uint32_t value;
 };
 
+#define JOB_BEAT_MS 1000
 #define JOB_END_BYTES 8
 void job_end_encode(const struct job_end *end, uint8_t message[JOB_END_BYTES]);
 bool job_end_decode(struct job_end *end, const uint8_t *message, size_t size);

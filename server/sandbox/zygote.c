@@ -25,7 +25,7 @@ struct child {
     pid_t pid;
     int end_fd;
     uint64_t deadline_ms;
-    bool timed_out;
+    bool timed_out, stopped;
 };
 
 _Static_assert(N_JOB_FDS <= PASS_MAX_FDS, "a job's descriptors travel in one message");
@@ -36,6 +36,7 @@ struct zygote {
     int signal_fd;
     pid_t pid;
     uint64_t held_bytes;
+    uint64_t next_beat_ms;
     size_t n_children;
     struct child children[ZYGOTE_MAX_CHILDREN];
 };
@@ -91,24 +92,36 @@ static void run_child(const struct zygote *zygote, const struct job *job,
 
 /* --- the parent: ends of children */
 
-/* Reports the end of a job to the daemon, and closes the pipe. */
-static void report(int end_fd, enum job_how how, uint32_t value)
+static void tell(int end_fd, enum job_how how, uint32_t value)
 {
     uint8_t message[JOB_END_BYTES];
     job_end_encode(&(struct job_end){how, value}, message);
     while (write(end_fd, message, sizeof message) < 0 && errno == EINTR)
         ;
+}
+
+/* Reports the end of a job to the daemon, and closes the pipe. */
+static void report(int end_fd, enum job_how how, uint32_t value)
+{
+    tell(end_fd, how, value);
     close(end_fd);
 }
 
 static void reap(struct zygote *zygote)
 {
     int status;
-    for (pid_t pid; (pid = waitpid(-1, &status, WNOHANG)) > 0;) {
+    for (pid_t pid; (pid = waitpid(-1, &status, WNOHANG | WUNTRACED)) > 0;) {
         struct child *child = zygote->children;
         while (child->pid != pid)
             child++;
-        if (child->timed_out)
+        if (WIFSTOPPED(status)) {
+            child->stopped = true;
+            kill(pid, SIGKILL);
+            continue;
+        }
+        if (child->stopped)
+            report(child->end_fd, JOB_STOPPED, 0);
+        else if (child->timed_out)
             report(child->end_fd, JOB_TIMED_OUT, 0);
         else if (WIFSIGNALED(status))
             report(child->end_fd, JOB_KILLED, (uint32_t)WTERMSIG(status));
@@ -118,10 +131,21 @@ static void reap(struct zygote *zygote)
     }
 }
 
+/* Tells the daemon, every JOB_BEAT_MS, that the program still serves its jobs. */
+static void beat(struct zygote *zygote, uint64_t now)
+{
+    if (now < zygote->next_beat_ms)
+        return;
+    zygote->next_beat_ms = now + JOB_BEAT_MS;
+    for (size_t i = 0; i < zygote->n_children; i++)
+        tell(zygote->children[i].end_fd, JOB_RUNNING, 0);
+}
+
 /* Kills children that are overdue. Returns how long poll() may sleep, in ms; -1: for ever. */
 static int kill_overdue(struct zygote *zygote)
 {
-    uint64_t now = now_ms(), next = UINT64_MAX;
+    uint64_t now = now_ms(), next = zygote->n_children > 0 ? now + JOB_BEAT_MS : UINT64_MAX;
+    beat(zygote, now);
     for (size_t i = 0; i < zygote->n_children; i++) {
         struct child *child = &zygote->children[i];
         if (child->timed_out)
@@ -149,7 +173,8 @@ static void start_child(struct zygote *zygote, const struct job *job,
     } else {
         const uint64_t deadline_ms = now_ms() + (uint64_t)job->limits.wall_s * 1000;
         zygote->children[zygote->n_children++] =
-            (struct child){pid, fds[JOB_END], deadline_ms, false};
+            (struct child){pid, fds[JOB_END], deadline_ms, false, false};
+        tell(fds[JOB_END], JOB_RUNNING, 0);
     }
     close(fds[JOB_INPUT]);
     close(fds[JOB_ANSWER]);

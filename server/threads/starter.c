@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
+#include <poll.h>
 #include <linux/close_range.h>
 #include <sched.h>
 #include <signal.h>
@@ -17,6 +18,8 @@
 
 #include "server/sandbox/pass.h"
 #include "server/sandbox/zygote.h"
+
+enum { ANSWER_S = 10 }; /* longer than any request takes */
 
 struct starter {
     int fd;
@@ -146,7 +149,9 @@ struct starter *starter_create(const char *path, struct error *error)
         free(starter);
         return NULL;
     }
+    const struct timeval most = {.tv_sec = ANSWER_S};
     starter->fd = pair[0];
+    setsockopt(starter->fd, SOL_SOCKET, SO_RCVTIMEO, &most, sizeof most);
     starter->pid = fork();
     if (starter->pid == 0)
         run(pair[1], path);
@@ -165,10 +170,12 @@ static int ask(struct starter *starter, const int fds[], size_t n_fds)
     const char request = 0;
     int failed = 0, none[PASS_MAX_FDS];
     size_t n_none;
-    if (!pass_send(starter->fd, &request, sizeof request, fds, n_fds) ||
-        pass_receive(starter->fd, &failed, sizeof failed, none, &n_none) != sizeof failed)
-        return ECHILD;
-    return failed;
+    if (pass_send(starter->fd, &request, sizeof request, fds, n_fds) &&
+        pass_receive(starter->fd, &failed, sizeof failed, none, &n_none) == sizeof failed)
+        return failed;
+    /* It is dead or stopped. A late answer must not be taken for that to another request. */
+    shutdown(starter->fd, SHUT_RDWR);
+    return ECHILD;
 }
 
 int starter_start(struct starter *starter, int socket_fd)
@@ -179,6 +186,12 @@ int starter_start(struct starter *starter, int socket_fd)
 void starter_stop(struct starter *starter)
 {
     ask(starter, NULL, 0);
+}
+
+bool starter_is_alive(const struct starter *starter)
+{
+    struct pollfd end = {starter->fd, 0, 0};
+    return poll(&end, 1, 0) == 0;
 }
 
 void starter_destroy(struct starter *starter)

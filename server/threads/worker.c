@@ -32,6 +32,7 @@ struct worker {
     struct starter *starter;
     unsigned starts; /* number of starts, to know which process got a job */
     bool stopped;
+    unsigned n_silent; /* jobs that have not heard of the program for WORKER_SILENT_MS */
     size_t n_spares;
     int spare_fds[WORKER_MAX_SPARES]; /* input files of ended jobs */
 };
@@ -96,6 +97,15 @@ bool worker_wake(struct worker *worker, struct error *error)
     bool ok = worker->stopped || worker->socket_fd >= 0 || start(worker, error);
     pthread_mutex_unlock(&worker->lock);
     return ok;
+}
+
+enum worker_health worker_health(struct worker *worker)
+{
+    pthread_mutex_lock(&worker->lock);
+    bool is_silent = worker->n_silent > 0;
+    bool is_lost = !worker->stopped && !starter_is_alive(worker->starter);
+    pthread_mutex_unlock(&worker->lock);
+    return is_lost ? WORKER_LOST : is_silent ? WORKER_SILENT : WORKER_WELL;
 }
 
 void worker_stop(struct worker *worker)
@@ -214,26 +224,57 @@ static void bury(struct worker *worker, unsigned starts)
     pthread_mutex_lock(&worker->lock);
     if (worker->starts == starts && worker->socket_fd >= 0) {
         end(worker);
-        log_event(LOG_WARN, "a reader had died; it is started again when it is needed",
+        log_event(LOG_WARN,
+                  "a reader had died or was stopped; it is started again when it is needed",
                   log_text("program", program_name(worker)));
     }
     pthread_mutex_unlock(&worker->lock);
 }
 
-/* Waits for the end of a job. False if the program died or did not report in time. */
-static bool await(int end_fd, const struct job *job, struct job_end *job_end)
+/* Notes that one job more, or one less, hears nothing of the program. */
+static void set_silent(struct worker *worker, bool *is_silent, bool now)
+{
+    if (*is_silent == now)
+        return;
+    *is_silent = now;
+    pthread_mutex_lock(&worker->lock);
+    worker->n_silent += now ? 1 : -1u;
+    pthread_mutex_unlock(&worker->lock);
+}
+
+/* Waits for the next message about a job. False if there is none within BEAT_MS; *is_over: there will
+ * be none, or it is malformed. */
+static bool hear(int end_fd, struct job_end *job_end, bool *is_over)
 {
     struct pollfd end = {end_fd, POLLIN, 0};
     uint8_t message[JOB_END_BYTES];
-    const uint64_t deadline_us =
-        clock_now_us() + ((uint64_t)job->limits.wall_s + GRACE_S) * 1000000;
-    int n;
-    do {
-        pool_beat();
-        n = poll(&end, 1, BEAT_MS);
-    } while ((n == 0 && clock_now_us() < deadline_us) || (n < 0 && errno == EINTR));
-    ssize_t size = n > 0 ? read(end_fd, message, sizeof message) : -1;
-    return size > 0 && job_end_decode(job_end, message, (size_t)size);
+    pool_beat();
+    int n = poll(&end, 1, BEAT_MS);
+    *is_over = n < 0 && errno != EINTR;
+    if (n <= 0)
+        return false;
+    ssize_t size = read(end_fd, message, sizeof message);
+    *is_over = size <= 0 || !job_end_decode(job_end, message, (size_t)size);
+    return !*is_over;
+}
+
+/* Waits for the end of a job. False if the program died, is stopped or did not report in time. */
+static bool await(struct worker *worker, int end_fd, const struct job *job, struct job_end *job_end)
+{
+    uint64_t heard_us = clock_now_us();
+    const uint64_t deadline_us = heard_us + ((uint64_t)job->limits.wall_s + GRACE_S) * 1000000;
+    bool is_over = false, is_silent = false, has_ended = false;
+    while (!is_over && !has_ended) {
+        bool heard = hear(end_fd, job_end, &is_over);
+        uint64_t now_us = clock_now_us();
+        has_ended = heard && job_end->how != JOB_RUNNING;
+        if (heard)
+            heard_us = now_us;
+        set_silent(worker, &is_silent, now_us - heard_us > WORKER_SILENT_MS * 1000);
+        is_over = is_over || now_us > deadline_us || now_us - heard_us > WORKER_DEAD_MS * 1000;
+    }
+    set_silent(worker, &is_silent, false);
+    return has_ended;
 }
 
 /* Makes a new file for the answer of each attempt: a process of an earlier attempt may still write
@@ -276,8 +317,9 @@ static bool attempt(struct worker *worker, const struct worker_call *call, const
     bool ok = submit(worker, job, fds, &starts, error);
     close(input_fd);
     close(ends[1]); /* only the program keeps this end: if it dies, the pipe closes */
-    if (ok && !await(ends[0], job, job_end))
-        ok = error_set(error, ERROR_SERVER, "%s has died: try again", program_name(worker));
+    if (ok && !await(worker, ends[0], job, job_end))
+        ok = error_set(error, ERROR_SERVER, "%s has died or was stopped: try again",
+                       program_name(worker));
     close(ends[0]);
     if (!ok)
         bury(worker, starts);
@@ -291,6 +333,8 @@ static bool explain(const struct job_end *end, const struct job_limits *limits, 
     if (end->how == JOB_TIMED_OUT)
         return error_set(error, ERROR_SERVER, "%s: not done in %u s: try again later", name,
                          limits->wall_s);
+    if (end->how == JOB_STOPPED)
+        return error_set(error, ERROR_SERVER, "%s: its process was stopped: try again later", name);
     if (end->how == JOB_NOT_RUN)
         return error_set(error, ERROR_SERVER, "%s: no process for it: %s: try again later", name,
                          strerror((int)end->value));
@@ -353,8 +397,11 @@ bool worker_run(struct worker *worker, struct worker_call *call, enum job_kind k
     const struct job job = {kind, *limits, (uint64_t)input_bytes};
     struct job_end job_end = {0};
     int attempts = 0;
-    while (!call->ended && attempts++ < ATTEMPTS)
+    while (!call->ended || (job_end.how == JOB_STOPPED && attempts < ATTEMPTS)) {
+        if (attempts++ == ATTEMPTS)
+            break;
         call->ended = renew_answer(call, error) && attempt(worker, call, &job, &job_end, error);
+    }
     if (!call->ended)
         return false;
     if (job_end.how != JOB_EXITED || job_end.value != 0)

@@ -14,6 +14,10 @@
  * 2160. */
 #define WORKER_MAX_SPARES 2
 #define WORKER_MAX_SPARE_BYTES (32u << 20)
+/* A program that has a job tells every JOB_BEAT_MS that it works. After the first time it counts as
+ * silent, after the second as dead: it is killed, and the job is given to another. */
+#define WORKER_SILENT_MS 2500
+#define WORKER_DEAD_MS 6000
 
 struct worker;
 
@@ -22,6 +26,12 @@ struct worker *worker_create(const char *path, struct error *error);
 /* Starts the program unless it runs. A job would start it too, but would then wait for its
  * libraries to load. False with ERROR_SERVER. */
 bool worker_wake(struct worker *worker, struct error *error);
+enum worker_health {
+    WORKER_WELL,
+    WORKER_SILENT, /* it has a job, and has not told for WORKER_SILENT_MS that it works */
+    WORKER_LOST,   /* it cannot be started again: the starter's process has died */
+};
+enum worker_health worker_health(struct worker *worker);
 /* Kills the program and its jobs. No thread may wait for a job. NULL is safe. */
 void worker_destroy(struct worker *worker);
 /* From now on all jobs fail soon, including those that run: the daemon ends. */
@@ -55,7 +65,8 @@ void worker_call_finish(struct worker_call *call);
  *                 that and would do so again
  *   ERROR_SERVER  the process was killed, or the program cannot be started
  *
- * If the program dies during the job, the job is run once more. */
+ * If the program dies or is stopped during the job, the job is run once more; also if the job's process
+ * is stopped. */
 bool worker_run(struct worker *worker, struct worker_call *call, enum job_kind kind,
                 const struct job_limits *limits, const char *name, enum error_kind damage,
                 struct error *error);

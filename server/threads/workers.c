@@ -94,6 +94,18 @@ void workers_stop(struct workers *workers)
     worker_stop(workers->images);
 }
 
+const char *workers_trouble(struct workers *workers)
+{
+    static const char *const texts[2][3] = {
+        {NULL, "sheend-cage does not answer: it will be started again",
+         "sheend-cage cannot be started any more, so no new model is read: restart the daemon"},
+        {NULL, "sheend-image does not answer: it will be started again",
+         "sheend-image cannot be started any more, so no image, EXR or TIFF is read or written: "
+         "restart the daemon"}};
+    const enum worker_health cages = worker_health(workers->cages);
+    return cages != WORKER_WELL ? texts[0][cages] : texts[1][worker_health(workers->images)];
+}
+
 void workers_limit_jobs(struct workers *workers, unsigned most)
 {
     pthread_mutex_lock(&workers->lock);

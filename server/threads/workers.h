@@ -52,6 +52,8 @@ void workers_finish(struct workers *workers);
 void workers_expect_images(struct workers *workers);
 /* At most so many jobs run at once from now on (at least 1); others wait. */
 void workers_limit_jobs(struct workers *workers, unsigned most);
+/* NULL if both programs are well, else one line for health checks: which is not, and why. */
+const char *workers_trouble(struct workers *workers);
 /* worker_stop() for both programs. */
 void workers_stop(struct workers *workers);
 

@@ -14,7 +14,7 @@ import unittest
 
 import wire
 from daemon import CUBE, SHEEN, SHEEND, Daemon, run
-from test_untrusted import is_alive, workers
+from test_untrusted import children, is_alive, workers
 from wire import Client
 
 
@@ -210,7 +210,7 @@ class ServiceManager(unittest.TestCase):
             os.kill(worker, signal.SIGSTOP)
             self.addCleanup(lambda: is_alive(worker) and os.kill(worker, signal.SIGCONT))
             client.send(wire.render(50, model))
-            time.sleep(2)
+            time.sleep(1.5)
             self.assertEqual(get(address, "/healthz"), (200, "ok\n"))
             self.assertNotIn("not fed", daemon.errors())
             readers = threads(daemon.process.pid, "sheend-read")
@@ -224,13 +224,40 @@ class ServiceManager(unittest.TestCase):
             self.assertIn("a reader thread", text)
             busy = 'sheen_thread_busy_seconds{thread="read"}'
             self.assertGreater(read_metrics(get(address, "/metrics")[1])[busy], 1)
+            os.kill(worker, signal.SIGCONT)
             for thread in readers:
                 trace(PTRACE_DETACH, thread)
-            os.kill(worker, signal.SIGCONT)
             client.read_frame(50)
             daemon.wait_for("not stuck any more")
         self.assertEqual(daemon.stop(), 0)
         manager.socket.close()
+
+    def await_health(self, address, status, words):
+        while True:
+            answer = get(address, "/healthz")
+            if answer[0] == status:
+                self.assertIn(words, answer[1])
+                return
+            time.sleep(0.05)
+
+    def test_health_tells_of_worker_programs(self):
+        """A stopped program is replaced, and its job is done. Without its starter it cannot be."""
+        daemon = Daemon("--metrics", f"unix:{self.folder}/metrics")
+        address, pid = metrics_address(daemon), daemon.process.pid
+        with Client(daemon.unix, timeout=60) as client:
+            model = client.upload(CUBE, "cube.obj")
+            os.kill(workers(pid)["sheend-cage"], signal.SIGSTOP)
+            client.send(wire.render(50, model))
+            self.await_health(address, 503, "sheend-cage does not answer")
+            client.read_frame(50)
+            self.await_health(address, 200, "ok")
+            client.seq = 50
+            for starter in children(pid):
+                os.kill(starter, signal.SIGKILL)
+            self.await_health(address, 503, "sheend-cage cannot be started any more")
+            daemon.wait_for("cannot be started any more")
+            client.render(model)
+        self.assertEqual(daemon.stop(), 0)
 
     def start_activated(self, sockets, names="", pid="os.getpid()", n=None, options=()):
         """Starts the daemon like a service manager: sockets from descriptor 3 on, and three variables."""

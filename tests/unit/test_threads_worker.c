@@ -278,6 +278,66 @@ static void test_killed_program(void **state)
     assert_works();
 }
 
+/* A job's process that somebody stops is killed, and the job is run once more. So it is if the program
+ * is stopped, which the worker says meanwhile. */
+static void test_stopped(void **state)
+{
+    (void)state;
+    struct running running;
+    assert_works();
+    const pid_t program = worker_program();
+    start_job(&running, "spin");
+    const pid_t child = child_of(program);
+    assert_true(child > 0);
+    assert_int_equal(kill(child, SIGSTOP), 0);
+    pthread_join(running.thread, NULL);
+    if (!running.ok)
+        fail_msg("%s", running.error.text);
+    assert_dies(child);
+    assert_false(is_dead(program));
+
+    assert_int_equal(worker_health(worker), WORKER_WELL);
+    assert_int_equal(kill(program, SIGSTOP), 0);
+    start_job(&running, "echo");
+    while (worker_health(worker) == WORKER_WELL)
+        nap();
+    assert_int_equal(worker_health(worker), WORKER_SILENT);
+    pthread_join(running.thread, NULL);
+    if (!running.ok)
+        fail_msg("%s", running.error.text);
+    assert_dies(program);
+    assert_int_equal(worker_health(worker), WORKER_WELL);
+}
+
+/* Without its starter a program serves until it ends, and the worker says that it cannot be started
+ * again. */
+static void test_dead_starter(void **state)
+{
+    struct worker *before = worker;
+    struct error error = {0};
+    start_worker(state);
+    assert_works();
+    pid_t starters[2] = {child_of(getpid()), 0};
+    char path[64];
+    snprintf(path, sizeof path, "/proc/%d/task/%d/children", getpid(), getpid());
+    FILE *file = fopen(path, "r");
+    assert_non_null(file);
+    assert_int_equal(fscanf(file, "%d %d", &starters[0], &starters[1]),
+                     2); /* the older one first */
+    fclose(file);
+    const pid_t program = child_of(starters[1]);
+    assert_int_equal(kill(starters[1], SIGKILL), 0);
+    while (worker_health(worker) == WORKER_WELL)
+        nap();
+    assert_int_equal(worker_health(worker), WORKER_LOST);
+    kill(program, SIGKILL);
+    assert_dies(program);
+    assert_false(run_job("echo", &JOB_LIMITS, &error));
+    assert_int_equal(error.kind, ERROR_SERVER);
+    worker_destroy(worker);
+    worker = before;
+}
+
 static void test_many_at_once(void **state)
 {
     (void)state;
@@ -487,6 +547,8 @@ int main(void)
         cmocka_unit_test(test_broken_answers),
         cmocka_unit_test(test_killed_child),
         cmocka_unit_test(test_killed_program),
+        cmocka_unit_test(test_stopped),
+        cmocka_unit_test(test_dead_starter),
         cmocka_unit_test(test_many_at_once),
         cmocka_unit_test(test_nothing_stays),
         cmocka_unit_test(test_inputs_are_lent),
