@@ -56,6 +56,16 @@ static void print_json(struct json *json, const struct sheen_stats *stats)
     json_uint(json, "still_us", stats->still_us);
     json_uint(json, "batch_us", stats->batch_us);
     json_uint(json, "memory_bytes", stats->memory_bytes);
+    json_object_begin(json, "budget");
+    json_uint(json, "bytes", stats->budget_bytes);
+    json_uint(json, "assets", stats->assets_bytes);
+    json_uint(json, "input", stats->input_bytes);
+    json_uint(json, "interactive", stats->interactive_bytes);
+    json_uint(json, "patient", stats->patient_bytes);
+    json_uint(json, "device", stats->device_bytes);
+    json_uint(json, "spare", stats->spare_bytes);
+    json_uint(json, "daemon", stats->daemon_bytes);
+    json_object_end(json);
     json_uint(json, "models", stats->models);
     json_uint(json, "model_bytes", stats->model_bytes);
     json_uint(json, "images", stats->images);
@@ -96,6 +106,24 @@ static void print_latency(const char *name, const struct sheen_stats *stats,
            (double)latency->p95_us / 1e3, (double)latency->p99_us / 1e3);
 }
 
+static double mb(uint64_t bytes)
+{
+    return (double)bytes / (1 << 20);
+}
+
+/* What holds the budget. An older daemon does not tell. */
+static void print_budget(const struct sheen_stats *stats)
+{
+    if (!stats->budget_bytes)
+        return;
+    printf("%-10s of %.0f MB, MB: models and images %.1f, receiving %.1f, interactive frames %.1f, "
+           "others "
+           "%.1f,\n%-10s drawing %.1f, spare %.1f, daemon %.1f\n",
+           "budget", mb(stats->budget_bytes), mb(stats->assets_bytes), mb(stats->input_bytes),
+           mb(stats->interactive_bytes), mb(stats->patient_bytes), "", mb(stats->device_bytes),
+           mb(stats->spare_bytes), mb(stats->daemon_bytes));
+}
+
 static void print_table(const struct sheen_stats *stats)
 {
     printf("%-10s sheend %s, up %.0f s\n", "server", stats->server, (double)stats->uptime_us / 1e6);
@@ -113,6 +141,7 @@ static void print_table(const struct sheen_stats *stats)
            (double)stats->interactive_us / 1e6, (double)stats->still_us / 1e6,
            (double)stats->batch_us / 1e6);
     printf("%-10s %" PRIu64 " bytes in use, of --memory-budget\n", "memory", stats->memory_bytes);
+    print_budget(stats);
     printf("%-10s %u, %" PRIu64 " bytes on the device; %u images\n", "models", stats->models,
            stats->model_bytes, stats->images);
     printf("%-10s %" PRIu64 " bytes uploaded, %" PRIu64 " bytes sent\n", "traffic",

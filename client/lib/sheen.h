@@ -791,6 +791,12 @@ struct sheen_stats {
     char device[128], driver[128], server[32];
     bool software;
     uint32_t threads; /* threads that draw without a GPU; 0: a GPU, or unknown */
+    /* The daemon's memory budget, and what holds it: models and images; what is being received;
+     * frames, and computations, by class; what frames are drawn on; memory kept for the next frames;
+     * what is set aside for the daemon itself. All 0 if the daemon is too old to tell. */
+    uint64_t budget_bytes;
+    uint64_t assets_bytes, input_bytes, interactive_bytes, patient_bytes;
+    uint64_t device_bytes, spare_bytes, daemon_bytes;
 };
 #define SHEEN_STATS_DEFAULTS ((struct sheen_stats){.size = sizeof(struct sheen_stats)})
 

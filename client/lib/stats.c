@@ -62,6 +62,14 @@ enum sheen_status sheen_query_stats(struct sheen_session *session, struct sheen_
         .p99 = times_from_message(&body.p99),
         .software = body.software,
         .threads = body.threads,
+        .budget_bytes = body.budget_bytes,
+        .assets_bytes = body.assets_bytes,
+        .input_bytes = body.input_bytes,
+        .interactive_bytes = body.interactive_bytes,
+        .patient_bytes = body.patient_bytes,
+        .device_bytes = body.device_bytes,
+        .spare_bytes = body.spare_bytes,
+        .daemon_bytes = body.daemon_bytes,
     };
     memcpy(whole.device, body.device, sizeof(whole.device));
     memcpy(whole.driver, body.driver, sizeof(whole.driver));

@@ -107,6 +107,8 @@ struct store_counts {
     /* Parts of the budget that are in use: files, tables, texels, messages and frames; what frames are
      * drawn on; spare blocks; what the daemon itself takes. */
     uint64_t used_bytes, device_bytes, spare_bytes, daemon_bytes;
+    /* Of used_bytes: assets, what is being received, interactive frames, other frames. */
+    uint64_t assets_bytes, input_bytes, interactive_bytes, patient_bytes;
     uint64_t budget_bytes;
     /* Since the start: uses of a ready asset, and uses that had to wait. */
     uint64_t hits, misses, evictions;

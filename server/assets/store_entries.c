@@ -303,6 +303,10 @@ struct store_counts store_count(const struct store *store)
     const uint64_t *used = store->account.used;
     const uint64_t device = used[ACCOUNT_DEVICE], spares = used[ACCOUNT_SPARES];
     struct store_counts counts = {.used_bytes = account_used(&store->account) - device - spares,
+                                  .assets_bytes = used[ACCOUNT_ASSETS],
+                                  .input_bytes = used[ACCOUNT_INPUT],
+                                  .interactive_bytes = used[ACCOUNT_INTERACTIVE],
+                                  .patient_bytes = used[ACCOUNT_PATIENT],
                                   .device_bytes = device,
                                   .spare_bytes = spares,
                                   .daemon_bytes = store->daemon_bytes,

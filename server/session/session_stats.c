@@ -24,6 +24,22 @@ static void add_recent(sheen_Stats *body, const struct stats *stats)
     body->batch = recent.latency[CLASS_BATCH];
 }
 
+/* Adds what holds the memory budget. */
+static void add_budget(sheen_Stats *body, const struct store_counts *counts)
+{
+    body->has_budget_bytes = body->has_assets_bytes = body->has_input_bytes = true;
+    body->has_interactive_bytes = body->has_patient_bytes = body->has_device_bytes = true;
+    body->has_spare_bytes = body->has_daemon_bytes = true;
+    body->budget_bytes = counts->budget_bytes;
+    body->assets_bytes = counts->assets_bytes;
+    body->input_bytes = counts->input_bytes;
+    body->interactive_bytes = counts->interactive_bytes;
+    body->patient_bytes = counts->patient_bytes;
+    body->device_bytes = counts->device_bytes;
+    body->spare_bytes = counts->spare_bytes;
+    body->daemon_bytes = counts->daemon_bytes;
+}
+
 void session_reply_stats(struct session *session, uint32_t seq)
 {
     const struct session_host *host = session->host;
@@ -63,6 +79,7 @@ void session_reply_stats(struct session *session, uint32_t seq)
         .memory_bytes = counts.used_bytes,
     };
     add_recent(&stats, &host->stats);
+    add_budget(&stats, &counts);
     snprintf(stats.device, sizeof stats.device, "%s", info->device);
     snprintf(stats.driver, sizeof stats.driver, "%s", info->driver);
     snprintf(stats.server, sizeof stats.server, "%s", SHEEN_VERSION);

@@ -712,10 +712,17 @@ class Stats(unittest.TestCase):
         sent = stats["sent_bytes_per_s"] * window_s
         self.assertGreater(sent, 20 * 64 * 48 * 4)
         self.assertLessEqual(sent, stats["sent_bytes"] + 0.001)  # the rounding of a quotient
+        budget = stats["budget"]
+        self.assertEqual((budget["daemon"], budget["input"]), (32 << 20, 0))
+        self.assertGreater(budget["assets"], len(CUBE))
+        self.assertGreater(budget["device"], 64 * 48 * 100)
+        parts = ("assets", "input", "interactive", "patient")
+        self.assertEqual(sum(budget[part] for part in parts), stats["memory_bytes"])
+        self.assertLess(sum(budget.values()) - budget["bytes"], budget["bytes"])
         table = subprocess.run([SHEEN, "stats", "--server", daemon.unix], capture_output=True,
                                text=True, timeout=60).stdout
         for words in ("frames/s", "bytes/s", "p50", "p95", "p99", "ms a frame", "interactive", "bytes on the device;",
-                      "bytes uploaded, ", "bytes in use, of --memory-budget", "device time spent, s: interactive",
+                      "bytes uploaded, ", "bytes in use, of --memory-budget", "models and images 0.", "device time spent, s: interactive",
                       "frames that needed the stage"):
             self.assertIn(words, table)
         self.assertNotIn("GPU", table.split("models", 1)[1])

@@ -237,7 +237,7 @@ static const struct {
     ADDED(sheen_model_info, size, findings, 5400),
     ADDED(sheen_request, size, window, 3304),
     ADDED(sheen_frame, size, threads, 3824),
-    ADDED(sheen_stats, size, threads, 784),
+    ADDED(sheen_stats, size, daemon_bytes, 848),
     ADDED(sheen_break_limits, size, curvature_percent, 32),
     ADDED(sheen_breaks, size, server, 3240),
     ADDED(sheen_compare_options, size, samples, 88),
