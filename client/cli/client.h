@@ -8,7 +8,7 @@
 #include "client/cli/output/json.h"
 #include "client/cli/options/options.h"
 #include "client/cli/output/progress.h"
-#include "client/cli/resume.h"
+#include "client/cli/base/resume.h"
 #include "client/lib/sheen.h"
 
 struct client {

@@ -4,7 +4,7 @@
 #include <stddef.h>
 #include <cmocka.h>
 
-#include "client/cli/resume.h"
+#include "client/cli/base/resume.h"
 
 #define LOST_MS 5000000
 

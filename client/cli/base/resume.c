@@ -1,4 +1,4 @@
-#include "client/cli/resume.h"
+#include "client/cli/base/resume.h"
 
 #define FIRST_WAIT_MS 200u
 #define LONGEST_WAIT_MS 2000u
