@@ -24,46 +24,58 @@ enum {
     (SHEEN_PLANE_POSITION | SHEEN_PLANE_NORMAL | SHEEN_PLANE_PTEX | SHEEN_PLANE_LIGHT |            \
      SHEEN_PLANE_CURVATURE)
 
-/* The picks in the order of their places, and as far as they are sent and answered. */
+/* The picks in the order of their places, and which of them are answered. */
 struct picks {
-    size_t n, n_sent, n_answered;
+    size_t n;
     struct pick *pick;
+    struct asked {
+        uint32_t number; /* of the latest request */
+        bool is_answered;
+    } * asked;
     struct sheen_request request;
     struct sheen_frame frame; /* the latest */
 };
 
-static enum sheen_status send_pick(struct client *client, struct picks *picks)
+static enum sheen_status send_pick(struct client *client, struct picks *picks, size_t i)
 {
-    const struct pick *pick = &picks->pick[picks->n_sent];
-    picks->request.window.x_px = pick->x;
-    picks->request.window.y_px = pick->y;
+    picks->request.window.x_px = picks->pick[i].x;
+    picks->request.window.y_px = picks->pick[i].y;
     enum sheen_status status = sheen_send(client->session, &picks->request, &client->error);
-    if (!status)
-        picks->n_sent++;
+    picks->asked[i].number = sheen_last_number(client->session);
     return status;
 }
 
-static enum sheen_status receive_pick(struct client *client, struct picks *picks)
+static void take_planes(void *const *plane, struct pick *pick)
 {
-    struct pick *pick = &picks->pick[picks->n_answered];
-    enum sheen_status status =
-        sheen_receive(client->session, &client->report, &picks->frame, &client->error);
-    if (status)
-        return status;
-    void *const *plane = picks->frame.plane;
     memcpy(&pick->face, plane[PTEX_BIT], sizeof(pick->face));
     memcpy(pick->uv, (const char *)plane[PTEX_BIT] + sizeof(pick->face), sizeof(pick->uv));
     memcpy(pick->point, plane[POSITION_BIT], sizeof(pick->point));
     memcpy(pick->normal, plane[NORMAL_BIT], sizeof(pick->normal));
     memcpy(pick->curvature, plane[CURVATURE_BIT], sizeof(pick->curvature));
     memcpy(pick->light, plane[LIGHT_BIT], sizeof(pick->light));
-    picks->n_answered++;
+}
+
+/* Receives an answer. They come in the order of the requests, but for those that libsheen has sent
+ * again because the daemon lost its GPU. */
+static enum sheen_status receive_pick(struct client *client, struct picks *picks)
+{
+    enum sheen_status status =
+        sheen_receive(client->session, &client->report, &picks->frame, &client->error);
+    if (status)
+        return status;
+    size_t i = 0;
+    while (i < picks->n &&
+           (picks->asked[i].is_answered || picks->asked[i].number != picks->frame.number))
+        i++;
+    if (i == picks->n)
+        return failure_set(&client->error, SHEEN_BAD_PEER, "an answer to no pick");
+    take_planes(picks->frame.plane, &picks->pick[i]);
+    picks->asked[i].is_answered = true;
     client_answered(client);
     return SHEEN_OK;
 }
 
-/* Asks for all picks without an answer, as many at once as the daemon allows. Answers to stills come
- * in the order of the requests. */
+/* Asks for all picks without an answer, as many at once as the daemon allows. */
 static enum sheen_status ask(struct client *client, const struct options *options,
                              struct picks *picks)
 {
@@ -71,13 +83,20 @@ static enum sheen_status ask(struct client *client, const struct options *option
     enum sheen_status status = client_upload_images(client, options, &picks->request);
     if (!status)
         status = sheen_get_server(client->session, &server, &client->error);
-    picks->n_sent = picks->n_answered;
-    while (!status && picks->n_answered < picks->n) {
-        if (picks->n_sent < picks->n && picks->n_sent - picks->n_answered < server.max_in_flight)
-            status = send_pick(client, picks);
-        else
+    uint32_t in_flight = 0;
+    for (size_t i = 0; !status && i < picks->n; i++) {
+        if (picks->asked[i].is_answered)
+            continue;
+        if (in_flight == server.max_in_flight) {
             status = receive_pick(client, picks);
+            in_flight--;
+        }
+        if (!status)
+            status = send_pick(client, picks, i);
+        in_flight++;
     }
+    for (; !status && in_flight > 0; in_flight--)
+        status = receive_pick(client, picks);
     return status;
 }
 
@@ -144,11 +163,14 @@ static int run(const struct options *options)
     picks.request.planes = PICK_PLANES;
     picks.request.format = SHEEN_FORMAT_RAW;
     picks.pick = calloc(picks.n, sizeof(*picks.pick));
-    if (!picks.pick)
-        return client_finish(&client, failure_set(&client.error, SHEEN_NO_MEMORY,
-                                                  "no memory for %zu samples", picks.n));
-    set_places(&picks, options->at);
-    enum sheen_status status = client_init(&client, options);
+    picks.asked = calloc(picks.n, sizeof(*picks.asked));
+    enum sheen_status status = SHEEN_OK;
+    if (picks.pick && picks.asked)
+        set_places(&picks, options->at);
+    else
+        status = failure_set(&client.error, SHEEN_NO_MEMORY, "no memory for %zu samples", picks.n);
+    if (!status)
+        status = client_init(&client, options);
     if (!status)
         status = ask(&client, options, &picks);
     while (status && client_resume(&client, options, &status))
@@ -157,6 +179,7 @@ static int run(const struct options *options)
     if (!status)
         status = print(&client, options, &picks);
     sheen_frame_finish(&picks.frame);
+    free(picks.asked);
     free(picks.pick);
     return client_finish(&client, status);
 }

@@ -10,8 +10,10 @@ import tempfile
 
 import numpy as np
 
+import between
 import exr
 import sheen
+import wire
 from daemon import MODELS, SHEEN, Daemon, DaemonCase
 
 FENDER = os.path.join(MODELS, "fender.gltf")
@@ -146,6 +148,17 @@ class Pick(DaemonCase):
                     session.pick(FENDER, None, *place, size=SIZE)
             with self.assertRaises(sheen.BadArgument):
                 session.section(FENDER, None, (0, 0), (1, 1), 1)
+
+    def test_a_section_goes_on_after_a_loss(self):
+        """The connection is cut at a request in the middle; what has no answer is asked again."""
+        line = ("--section", "10,20,300,200", "--samples", "60")
+        whole = self.pick(*line)
+        with between.Between(self.daemon, between.cut_at(wire.RENDER, 40)) as relay:
+            done = subprocess.run([SHEEN, "pick", FENDER, *line, "--size", SIZE, *SCENE, "--server", relay.unix],
+                                  capture_output=True, text=True, timeout=60)
+            self.assertEqual(relay.n_connections, 2)
+        self.assertEqual((done.returncode, done.stdout), (0, whole))
+        self.assertIn("connecting again", done.stderr)
 
     def test_server_is_lost(self):
         """A private daemon serves it as well, and a server that goes is named."""
