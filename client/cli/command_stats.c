@@ -106,22 +106,16 @@ static void print_latency(const char *name, const struct sheen_stats *stats,
            (double)latency->p95_us / 1e3, (double)latency->p99_us / 1e3);
 }
 
-static double mb(uint64_t bytes)
+/* What holds the budget, in MB; an older daemon does not tell. */
+static void print_budget(const struct sheen_stats *of)
 {
-    return (double)bytes / (1 << 20);
-}
-
-/* What holds the budget. An older daemon does not tell. */
-static void print_budget(const struct sheen_stats *stats)
-{
-    if (!stats->budget_bytes)
-        return;
-    printf("%-10s of %.0f MB, MB: models and images %.1f, receiving %.1f, interactive frames %.1f, "
-           "others "
-           "%.1f,\n%-10s drawing %.1f, spare %.1f, daemon %.1f\n",
-           "budget", mb(stats->budget_bytes), mb(stats->assets_bytes), mb(stats->input_bytes),
-           mb(stats->interactive_bytes), mb(stats->patient_bytes), "", mb(stats->device_bytes),
-           mb(stats->spare_bytes), mb(stats->daemon_bytes));
+    const double mb = 1.0 / (1 << 20);
+    if (of->budget_bytes)
+        printf("%-10s of %.0f MB, MB: models and images %.1f, receiving %.1f, interactive frames "
+               "%.1f,\n%-10s others %.1f, drawing %.1f, spare %.1f, daemon %.1f\n",
+               "budget", mb * of->budget_bytes, mb * of->assets_bytes, mb * of->input_bytes,
+               mb * of->interactive_bytes, "", mb * of->patient_bytes, mb * of->device_bytes,
+               mb * of->spare_bytes, mb * of->daemon_bytes);
 }
 
 static void print_table(const struct sheen_stats *stats)
