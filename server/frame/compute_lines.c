@@ -243,7 +243,7 @@ static bool pack_records(struct compute *compute, const struct surface_lines_res
 static bool pack(struct compute *compute, struct error *error)
 {
     const struct surface_lines_result result =
-        surface_lines_result((const struct surface_lines *)compute->computation);
+        surface_lines_get((const struct surface_lines *)compute->computation);
     const struct frame_request *scene = &compute->scene;
     const sheen_Render *asked = &compute->request->render;
     if (!pack_records(compute, &result, error))

@@ -93,7 +93,7 @@ static void fields_agree_with_each_other(void **state)
             struct field_box field_box;
             limit_patch_of_level(&patch, &tables, &tables.nodes[BEZIER_FACE], 0, 0.5, 0.5);
             bezier_of_patch(&bezier, &tables, &patch);
-            bezier_nets(&bezier, &room, &surface);
+            bezier_make_nets(&bezier, &room, &surface);
             bezier_box_of(&surface, &box);
             field_make_nets(&field, &room, bezier.origin, &surface, &nets);
             field_make_box(&field, bezier.origin, &box, &field_box);
@@ -175,7 +175,7 @@ static void lines_on_a_plane_mirror_are_straight(void **state)
     for (int i = 0; i < 21; i++)
         line_set_add(set, &map, 0, -1 + 0.15 * i);
     struct surface_lines *traced = trace_set(&tables, set, 1e-3 * size);
-    struct surface_lines_result result = surface_lines_result(traced);
+    struct surface_lines_result result = surface_lines_get(traced);
     assert_true(result.curves->n_curves >= 10);
     assert_int_equal(result.n_marks, 0);
     for (size_t c = 0; c < result.curves->n_curves; c++) {
@@ -223,7 +223,7 @@ static void lines_on_a_parabolic_cylinder_are_where_they_belong(void **state)
     for (int i = 0; i < 9; i++)
         line_set_add(set, &map, 0, 0.13 + 0.1 * i);
     struct surface_lines *traced = trace_set(&tables, set, 1e-3);
-    struct surface_lines_result result = surface_lines_result(traced);
+    struct surface_lines_result result = surface_lines_get(traced);
     assert_int_equal(result.curves->n_curves, 9);
     for (size_t c = 0; c < 9; c++) {
         const struct curve *curve = &result.curves->curve[c];
@@ -325,7 +325,7 @@ static void the_grid_shows_as_many_curves(void **state)
             place[k] = line_position_at(&map, at.s, at.n).s;
         }
         struct surface_lines *traced = trace_set(&tables, set, 1e-3);
-        struct surface_lines_result result = surface_lines_result(traced);
+        struct surface_lines_result result = surface_lines_get(traced);
         assert_int_equal(result.n_marks, 0);
         for (uint32_t i = 0; i < set->n_lines; i++) {
             unsigned n = 0;
@@ -399,7 +399,7 @@ static void check_model(const char *name, unsigned first_kind, unsigned kinds)
             line_set_add(set, &map, 0, (i + 0.37) / n_lines);
         double tolerance = 1e-4 * size;
         struct surface_lines *traced = trace_set(&tables, set, tolerance);
-        struct surface_lines_result result = surface_lines_result(traced);
+        struct surface_lines_result result = surface_lines_get(traced);
         for (size_t c = 0; c < result.curves->n_curves; c++) {
             const struct curve *curve = &result.curves->curve[c];
             const struct traced_point *p = result.curves->point + curve->first;
@@ -475,8 +475,8 @@ static void order_of_slices_has_no_effect(void **state)
         while (n > 0)
             run->kind->slice(run, --n);
     }
-    const struct curve_set *a = surface_lines_result(forwards).curves;
-    const struct curve_set *b = surface_lines_result(backwards).curves;
+    const struct curve_set *a = surface_lines_get(forwards).curves;
+    const struct curve_set *b = surface_lines_get(backwards).curves;
     assert_true(a->n_points > 100);
     assert_int_equal(a->n_points, b->n_points);
     assert_int_equal(a->n_curves, b->n_curves);

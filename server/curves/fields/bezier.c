@@ -74,7 +74,7 @@ static void finish(struct net_room *room, struct net su[3], struct net sv[3],
             out->n[d].c[k] /= most;
 }
 
-void bezier_nets(const struct bezier *bezier, struct net_room *room, struct bezier_nets *out)
+void bezier_make_nets(const struct bezier *bezier, struct net_room *room, struct bezier_nets *out)
 {
     struct net su[3], sv[3];
     for (int d = 0; d < 3; d++) {

@@ -31,7 +31,7 @@ struct bezier_box {
 void bezier_box_of(const struct bezier_nets *nets, struct bezier_box *box);
 
 /* Over the whole patch, with u and v from 0 to 1. */
-void bezier_nets(const struct bezier *bezier, struct net_room *room, struct bezier_nets *out);
+void bezier_make_nets(const struct bezier *bezier, struct net_room *room, struct bezier_nets *out);
 /* Along a side, as polynomials of one variable: sides 0 to 3 are v = 0, u = 1, v = 1, u = 0, each run through
  * counter-clockwise. */
 void bezier_side_nets(const struct bezier *bezier, struct net_room *room, int side,

@@ -318,7 +318,7 @@ struct computation *surface_lines_computation(struct surface_lines *lines)
     return &lines->base;
 }
 
-struct surface_lines_result surface_lines_result(const struct surface_lines *lines)
+struct surface_lines_result surface_lines_get(const struct surface_lines *lines)
 {
     return (struct surface_lines_result){.set = lines->set,
                                          .curves = &lines->curves,

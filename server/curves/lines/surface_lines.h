@@ -27,6 +27,6 @@ struct surface_lines *surface_lines_create(const struct limit_tables *tables,
 struct computation *surface_lines_computation(struct surface_lines *lines);
 
 /* After the last phase. */
-struct surface_lines_result surface_lines_result(const struct surface_lines *lines);
+struct surface_lines_result surface_lines_get(const struct surface_lines *lines);
 
 #endif

@@ -408,7 +408,7 @@ void trace_patch(struct tracer *tracer, const struct limit_patch *patch,
     struct bezier_box surface_box;
     size_t mark = room->used;
     bezier_of_patch(&bezier, tracer->work.tables, patch);
-    bezier_nets(&bezier, room, &surface);
+    bezier_make_nets(&bezier, room, &surface);
     bezier_box_of(&surface, &surface_box);
     for (uint32_t f = 0; f < set->n_fields; f++) {
         size_t before = room->used;
