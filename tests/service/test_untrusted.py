@@ -164,6 +164,38 @@ class Untrusted(DaemonCase):
             self.assertFalse([target for target in kept if "input" not in target])
 
 
+class CutPieces(DaemonCase):
+    """A surface that reaches 1e15 units beyond its other vertices: all its pieces reach far beyond the picture, and
+    are cut to it."""
+    CAGE = b"""v 0 0 -0.207673081
+v 1 0 -0.0936913328
+v 0.623489802 0.781831482 -0.100010153
+v -0.222520934 0.974927912 0.0148677797
+v -0.900968868 0.433883739 -0.408690837
+v -0.900968868 -0.433883739 0.262366648
+v 1e+15 -0.974927912 -0.032048851
+v 0.623489802 -0.781831482 0.390586157
+f 1 2 3
+f 1 4 5
+f 1 5 6
+f 1 6 7
+f 1 7 8
+f 1 8 2
+t crease 2/1/0 0 5 9.99
+"""
+    CAMERA = bytes.fromhex("223a0a1b09cca7d7908d030c4011d03fce500c1ff8bf196a67f1e5387c0cc0121b0906dbad1d0fcadb3f1138ed59c62941e53f19ef2e"
+                           "c895c77ee03f")
+
+    def test_a_view_that_cuts_too_many_is_refused(self):
+        """It took 21 s of the thread that draws."""
+        with Client(self.daemon.unix, timeout=60) as client:
+            model = client.upload(self.CAGE, "far.obj")
+            with self.assertRaises(wire.Refused) as caught:
+                client.render(model, 48, 40, extra=self.CAMERA)
+            self.assertEqual(caught.exception.code, wire.ERROR_REQUEST)
+            self.assertIn("grid vertices", caught.exception.text)
+
+
 class Slow(DaemonCase):
     """A file that takes long delays nobody but its sender."""
     arguments = ("--threads", "1")

@@ -81,10 +81,26 @@ static void cut_to_picture(const struct view *view, int box[4])
     box[3] = box[3] < height ? box[3] : height - 1;
 }
 
-int native_cut_piece(const struct native_frame *frame, struct native_thread *thread,
+/* A vertex that is computed here, in double precision and with its patch searched for, takes as long as so many
+ * others. */
+enum { CUT_VERTEX_WEIGHT = 16 };
+
+/* Counts the vertices of a grid, so that views that cut very many pieces are refused, as others with too many vertices
+ * are. False if they are too many. */
+static bool count_vertices(struct native_frame *frame, int across, int down)
+{
+    uint64_t n = (uint64_t)(across + 1) * (uint64_t)(down + 1) * CUT_VERTEX_WEIGHT;
+    if (__atomic_add_fetch(&frame->n_vertices, n, __ATOMIC_RELAXED) > GRIDS_MAX_VERTICES)
+        __atomic_store_n(&frame->too_many, true, __ATOMIC_RELAXED);
+    return !__atomic_load_n(&frame->too_many, __ATOMIC_RELAXED);
+}
+
+int native_cut_piece(struct native_frame *frame, struct native_thread *thread,
                      const struct native_piece *piece, uint32_t grid, int box[4], float *nearest)
 {
     int across = grid_cells[grid / GRID_SIDES], down = grid_cells[grid % GRID_SIDES], total = 0;
+    if (!count_vertices(frame, across, down))
+        return 0;
     struct native_corner row[2][65];
     struct native_clip clip;
     native_clip_init(&clip, frame->view);

@@ -176,7 +176,7 @@ static const struct native_patch *understand(const struct native_frame *frame,
 }
 
 /* Places a piece as a cell, a grid or triangles. 0: not in a place that is looked at; -1: no memory. */
-static int draw_piece(const struct native_frame *frame, struct native_thread *thread,
+static int draw_piece(struct native_frame *frame, struct native_thread *thread,
                       const struct placed_node *node, uint32_t grid,
                       const struct native_patch *patch, struct native_piece *piece,
                       struct native_quad *quad, float *nearest)
@@ -263,8 +263,7 @@ static void expect(const struct native_frame *frame, const struct native_thread 
 }
 
 /* Draws the chosen pieces that cover pixels' centres. False: no memory. */
-static bool draw_chosen(const struct native_frame *frame, struct native_thread *thread,
-                        size_t n_chosen)
+static bool draw_chosen(struct native_frame *frame, struct native_thread *thread, size_t n_chosen)
 {
     struct placed_node node = {{0}, 0, {{0}}};
     uint32_t last = UINT32_MAX;
