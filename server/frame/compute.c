@@ -242,6 +242,8 @@ static void task_done(struct task *task)
     of->is_busy = false;
     compute->n_running--;
     compute->n_done += compute->step == COMPUTE_SLICES;
+    if (compute->step == COMPUTE_SLICES && of->took_us > compute->longest_us)
+        compute->longest_us = of->took_us;
     slices_done(slices, &compute->source, of->took_us);
     bool is_last = compute->n_running == 0 &&
                    (compute->step != COMPUTE_SLICES || compute->next_slice == compute->n_slices);
@@ -254,10 +256,15 @@ static void task_done(struct task *task)
     slices_start(slices);
 }
 
-/* While frames are drawn or encoded, one task at a time, so that they get the processors. */
+/* One task at a time while frames are drawn or encoded, so that they get the processors. The same until a slice has been
+ * run, and after one that took much longer than it should: if such slices ran on all threads of the pool, nobody's
+ * picture could be encoded. */
 static unsigned most_running(const struct compute *compute)
 {
-    return scheduler_is_idle(&compute->request->host->scheduler) ? compute->n_tasks : 1;
+    enum { LONG_US = 10 * SLICE_US };
+    bool is_free = compute->longest_us > 0 && compute->longest_us < LONG_US &&
+                   scheduler_is_idle(&compute->request->host->scheduler);
+    return is_free ? compute->n_tasks : 1;
 }
 
 static struct task *next_task(struct slice_source *source)

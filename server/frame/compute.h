@@ -83,8 +83,9 @@ struct compute {
     enum { COMPUTE_BEGIN, COMPUTE_SLICES, COMPUTE_PACK } step;
     unsigned phase;
     size_t n_slices, next_slice, n_done;
-    unsigned n_running; /* tasks on the pool */
-    bool ok;            /* false: `error` says why */
+    unsigned n_running;  /* tasks on the pool */
+    uint64_t longest_us; /* of the slices so far; 0: none was run */
+    bool ok;             /* false: `error` says why */
     struct error error;
     unsigned n_tasks;
     struct compute_task tasks[]; /* n_tasks */

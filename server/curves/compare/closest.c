@@ -210,13 +210,19 @@ static const struct tree_box *box_of(const struct surface_tree *tree, unsigned d
     return &tree->boxes[((size_t)1 << d) - 1 + j];
 }
 
+/* A search near a pole, where hundreds of faces meet, takes a tenth of a second. */
+static bool is_cancelled(const struct surface_tree *tree)
+{
+    return tree->cancelled && atomic_load_explicit(tree->cancelled, memory_order_relaxed);
+}
+
 static void meet_tree(struct search *search)
 {
     const struct surface_tree *tree = search->tree;
     struct visit stack[MOST_DEPTH];
     int n = 0;
     stack[n++] = (struct visit){0, 0, enter(search, box_of(tree, 0, 0))};
-    while (n > 0) {
+    while (n > 0 && !is_cancelled(tree)) {
         struct visit at = stack[--n];
         if (!(at.distance <= search->reach))
             continue;
@@ -350,7 +356,7 @@ static void approach_tree(struct near_search *search)
     struct visit stack[MOST_DEPTH];
     int n = 0;
     stack[n++] = (struct visit){0, 0, 0};
-    while (n > 0) {
+    while (n > 0 && !is_cancelled(tree)) {
         struct visit at = stack[--n];
         if (!(at.distance < near_limit(search)))
             continue;

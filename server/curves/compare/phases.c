@@ -102,6 +102,7 @@ static bool begin_divide(struct comparison *comparison, size_t *n_slices, struct
         struct comparison_part *part = &comparison->part[k];
         if (!surface_tree_init(&part->tree, &part->surface, error))
             return false;
+        part->tree.cancelled = &comparison->base.cancelled;
         *n_slices += leaf_slices(part);
     }
     return true;

@@ -98,7 +98,7 @@ static void sample_leaf(struct leaf_samples *to)
             add_sample(to, 0, 0, 0.5 * parts[k].width, fmax(last_level / 3, 1e-300));
             continue;
         }
-        for (unsigned i = 0; i < nx * ny; i++)
+        for (unsigned i = 0; i < nx * ny && !to->comparison->base.cancelled; i++)
             add_sample(to, parts[k].x + (i % nx + 0.5) * dx, parts[k].y + (i / nx + 0.5) * dy,
                        0.5 * fmax(dx, dy), -dx * dy);
     }

@@ -8,6 +8,8 @@
 #ifndef SHEEN_CURVES_COMPARE_SURFACE_TREE_H
 #define SHEEN_CURVES_COMPARE_SURFACE_TREE_H
 
+#include <stdatomic.h>
+
 #include "server/curves/compare/kept_surface.h"
 
 /* An axis-parallel box: least x, y, z, and largest x, y, z. */
@@ -28,6 +30,7 @@ enum { TREE_CUTS = 4 };
 
 struct surface_tree {
     const struct kept_surface *surface; /* outlives the tree */
+    const atomic_bool *cancelled;       /* searches end early once it is true; NULL: never */
     /* [n_leaves]: pieces of each leaf if a part has at most 4^n of them. */
     uint32_t (*n_pieces_of)[TREE_CUTS];
     uint32_t *first_piece; /* [n_leaves] */
