@@ -436,6 +436,37 @@ void judge_hole(verdict *verdict)
 /* --- as a computation ---------------------------------------------------------------------------- */
 
 /* The order of slices does not matter, and less memory than needed is refused. */
+/* A flat square whose sides x = 0 and x = 4 are moved inwards and outwards: strips without a sample inside. */
+void judge_strips(verdict *verdict)
+{
+    auto flat = [](int, int) { return 0.0; };
+    loose_cage square = sheet(4, flat);
+    for (uint32_t vertex : {0u, 4u, 20u, 24u})
+        square.corners.push_back({vertex, 10});
+    surface before(square);
+    double limit = 1e-5 * before.size();
+    for (double strip : {0.5 * limit, 2 * limit, 35 * limit}) {
+        for (bool is_wider : {false, true}) {
+            loose_cage scaled = square;
+            for (vec3 &p : scaled.position)
+                p.x *= 1 + (is_wider ? strip : -strip) / 4;
+            surface after(scaled);
+            comparison_result result = compare(setup_of(before, after));
+            const comparison_result_side &beyond = result.side[is_wider],
+                                         &within = result.side[!is_wider];
+            double exact = strip > limit ? 4 * strip : 0;
+            std::string what = "a strip of " + std::to_string(strip / limit) + " limits";
+            std::printf("%s: %.4e of %.4e uncovered\n", what.c_str(), beyond.area_uncovered, exact);
+            verdict->at_most(std::fabs(beyond.area_uncovered - exact), 0.01 * exact, what);
+            verdict->check(within.area_uncovered == 0, what + ": the smaller square is covered");
+            if (exact > 0)
+                verdict->check(
+                    std::fabs(beyond.uncovered_at.position.x - (is_wider ? 4 + strip : 4)) < 1e-5,
+                    what + ": the place lies on the border");
+        }
+    }
+}
+
 void judge_computation(verdict *verdict)
 {
     loose_cage body = read_loose("tests/models/body.obj"), moved = body;
@@ -586,6 +617,7 @@ int main(int argc, char **argv)
     judge_moved_vertex(&verdict);
     judge_rotation(&verdict);
     judge_hole(&verdict);
+    judge_strips(&verdict);
     judge_computation(&verdict);
     judge_pairs(&verdict);
     return verdict.finish();

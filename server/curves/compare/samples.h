@@ -1,5 +1,6 @@
 /* How many samples each part of a surface gets: about equally many for each unit of area, and a least number for each
- * patch. A sample stands for a rectangle of a leaf, and lies in its middle. Plain data of one thread; read-only
+ * patch. A sample stands for a rectangle of a leaf, and lies in its middle; further ones on
+ * borders (sampling.c) are not counted here. Plain data of one thread; read-only
  * afterwards. */
 #ifndef SHEEN_CURVES_COMPARE_SAMPLES_H
 #define SHEEN_CURVES_COMPARE_SAMPLES_H

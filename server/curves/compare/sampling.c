@@ -46,7 +46,20 @@ static void add_measures(struct leaf_samples *to, const struct comparison_values
     }
 }
 
-static void add_sample(struct leaf_samples *to, double x, double y, double step, double area)
+/* Adds area that the other surface does not cover, about a place of the leaf. */
+static void add_uncovered(struct leaf_samples *to, double area, double x, double y,
+                          struct vec position)
+{
+    to->sums->uncovered += area;
+    if (area <= to->sums->largest_uncovered)
+        return;
+    to->sums->largest_uncovered = area;
+    to->sums->uncovered_at =
+        comparison_place_of(&to->comparison->part[to->side].surface, to->leaf, x, y, position);
+}
+
+/* True if the other surface covers the place. */
+static bool add_sample(struct leaf_samples *to, double x, double y, double step, double area)
 {
     struct comparison *comparison = to->comparison;
     const struct comparison_part *part = &comparison->part[to->side],
@@ -68,14 +81,54 @@ static void add_sample(struct leaf_samples *to, double x, double y, double step,
         to->sums->rewound += at.is_rewound ? weight : 0;
         to->sums->unlit += at.is_unlit ? weight : 0;
     } else {
-        to->sums->uncovered += weight;
-        if (weight > to->sums->largest_uncovered) {
-            to->sums->largest_uncovered = weight;
-            to->sums->uncovered_at = comparison_place_of(&part->surface, to->leaf, x, y, at.from.s);
-        }
+        add_uncovered(to, weight, x, y, at.from.s);
     }
     add_measures(to, &at, weight, x, y, step);
     to->index++;
+    return at.is_covered;
+}
+
+/* Edges of a leaf: its sides y = 0, x = 1, y = 1, x = 0. */
+enum { EDGES = 4 };
+
+/* Sets for each edge of the leaf whether the surface ends there. */
+static void find_borders(const struct kept_surface *surface, size_t leaf, bool is_border[EDGES])
+{
+    static const double middles[EDGES][2] = {{0.5, 0}, {1, 0.5}, {0.5, 1}, {0, 0.5}};
+    for (int edge = 0; edge < EDGES; edge++)
+        is_border[edge] = kept_surface_at_border(surface, leaf, middles[edge][0], middles[edge][1]);
+}
+
+/* A sample on the border beside a covered sample, `width` long in the leaf's parameter. If the other surface ends
+ * farther aside than the limit of the distance, the strip between both borders is uncovered. */
+static void add_border_sample(struct leaf_samples *to, int edge, double x, double y, double width)
+{
+    struct comparison_values at;
+    struct closest_start start = to->last;
+    comparison_measure_at(to->comparison, to->side, to->leaf, x, y, &start, &at);
+    if (at.is_covered || at.to.kind != CLOSEST_BORDER)
+        return;
+    double length = width * vec_length(edge % 2 ? at.from.sv : at.from.su);
+    double strip = length * vec_length(vec_sub(at.to.at.s, at.from.s));
+    if (isfinite(strip))
+        add_uncovered(to, strip, x, y, at.from.s);
+}
+
+/* The border beside sample (i,j) of a part, of nx * ny samples, if that sample lies beside one. */
+static void add_border(struct leaf_samples *to, const struct kept_part *part,
+                       const bool is_border[EDGES], unsigned nx, unsigned ny, unsigned i,
+                       unsigned j)
+{
+    double dx = part->width / nx, dy = part->height / ny;
+    double x = part->x + (i + 0.5) * dx, y = part->y + (j + 0.5) * dy;
+    if (is_border[0] && j == 0 && part->y == 0)
+        add_border_sample(to, 0, x, 0, dx);
+    if (is_border[1] && i == nx - 1 && part->x + part->width == 1)
+        add_border_sample(to, 1, 1, y, dy);
+    if (is_border[2] && j == ny - 1 && part->y + part->height == 1)
+        add_border_sample(to, 2, x, 1, dx);
+    if (is_border[3] && i == 0 && part->x == 0)
+        add_border_sample(to, 3, 0, y, dy);
 }
 
 static void sample_leaf(struct leaf_samples *to)
@@ -83,6 +136,8 @@ static void sample_leaf(struct leaf_samples *to)
     const struct comparison_part *part = &to->comparison->part[to->side];
     struct kept_part parts[KEPT_PARTS];
     unsigned n = kept_surface_parts(&part->surface, to->leaf, parts), nx, ny;
+    bool is_border[EDGES];
+    find_borders(&part->surface, to->leaf, is_border);
     for (int k = 0; k < COMPARISON_MEASURES; k++)
         to->worst[k].magnitude = -1;
     if (part->surface.n_leaves == to->comparison->part[!to->side].surface.n_leaves)
@@ -99,8 +154,9 @@ static void sample_leaf(struct leaf_samples *to)
             continue;
         }
         for (unsigned i = 0; i < nx * ny && !to->comparison->base.cancelled; i++)
-            add_sample(to, parts[k].x + (i % nx + 0.5) * dx, parts[k].y + (i / nx + 0.5) * dy,
-                       0.5 * fmax(dx, dy), -dx * dy);
+            if (add_sample(to, parts[k].x + (i % nx + 0.5) * dx, parts[k].y + (i / nx + 0.5) * dy,
+                           0.5 * fmax(dx, dy), -dx * dy))
+                add_border(to, &parts[k], is_border, nx, ny, i % nx, i / nx);
     }
     for (int k = 0; k < COMPARISON_MEASURES; k++)
         enter_worst(to->sums->worst[k], WORST_OF_SLICE, &to->worst[k]);
