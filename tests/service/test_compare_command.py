@@ -62,7 +62,7 @@ class CompareCommand(Comparing):
     def json(self, *arguments, code):
         answer = json.loads(self.compare(*arguments, "--json", code=code).stdout)
         schema.check(answer, self.schema)
-        self.assertEqual(answer["verdict"], "differs" if code else "same")
+        self.assertEqual(answer["verdict"], {0: "same", 1: "differs"}.get(code, "failed"))
         return answer
 
     def test_exit_codes(self):
@@ -157,6 +157,46 @@ class CompareCommand(Comparing):
         self.assertEqual(len({row.count("|") for row in rows}), 1)
         self.assertTrue(rows[-1].startswith("| same.obj"), "the worst come first")
         self.compare(os.path.join(self.folder, "pairs"), os.path.join(self.folder, "pairs"), code=3)
+
+    def test_a_bad_file_in_a_folder(self):
+        """The first, the second and the last pair are bad; the others are compared nevertheless."""
+        bad = "v 0 0 zero\n"
+        for name, old, new in (("a.obj", bad, sheet()), ("b<.obj", sheet(), bad), ("bent.obj", sheet(), sheet(LIFT)),
+                               ("same.obj", sheet(), sheet())):
+            self.write(os.path.join("bad", "old", name), old)
+            self.write(os.path.join("bad", "new", name), new)
+        old, new = (os.path.join(self.folder, "bad", folder) for folder in ("old", "new"))
+        for folder in (old, new):
+            os.makedirs(os.path.join(folder, "z.obj"), exist_ok=True)  # cannot be read
+        report, summary = os.path.join(self.folder, "bad.xml"), os.path.join(self.folder, "bad.md")
+        pages = os.path.join(self.folder, "bad-pages")
+        outputs = ("--junit", report, "--markdown", summary, "--report", pages)
+        pairs = {pair["name"]: pair for pair in self.json(old, new, *outputs, code=3)["pairs"]}
+        self.assertEqual({name: pair["verdict"] for name, pair in pairs.items()},
+                         {"a.obj": "failed", "b<.obj": "failed", "bent.obj": "differs", "same.obj": "same",
+                          "z.obj": "failed"})
+        for name, side in (("a.obj", "old"), ("b<.obj", "new"), ("z.obj", "old")):
+            error = pairs[name]["error"]
+            self.assertEqual((error["side"], error["code"]), (side, 3))
+            self.assertIn(f"the {side} file: ", error["text"])
+        with open(report, "rb") as file:
+            suites = {suite.get("name"): suite for suite in xml.fromstring(file.read())}
+        self.assertEqual({name: (suite.get("errors"), len(suite.findall("testcase/error")), suite.get("failures") != "0")
+                          for name, suite in suites.items()},
+                         {"a.obj": ("1", 1, False), "b<.obj": ("1", 1, False), "bent.obj": ("0", 0, True),
+                          "same.obj": ("0", 0, False), "z.obj": ("1", 1, False)})
+        self.assertIn("the old file: ", suites["a.obj"].find("testcase/error").get("message"))
+        for path in (summary, os.path.join(pages, "index.html")):
+            with open(path, encoding="utf-8") as file:
+                text = file.read()
+            self.assertIn("1 same, 1 not, 3 failed", text)
+            self.assertEqual(text.count("the new file: "), 1)
+        done = self.compare(old, new, code=3)
+        self.assertIn("a.obj: failed\n  the old file: ", done.stdout)
+        self.assertIn("bent.obj: differs\n", done.stdout)
+        self.assertIn("5 pairs: 1 same, 1 not, 3 failed", done.stdout)
+        self.assertRegex(done.stderr, "3 of 5 pairs failed, first a.obj: the old file: ")
+        self.compare(old, new, "--server", "unix:/nowhere", code=4)
 
     def junit(self, report, strange):
         """Valid XML, and names that XML cannot hold."""

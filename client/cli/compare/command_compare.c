@@ -27,6 +27,7 @@ struct pairs {
     size_t n, room;
     char **names;
     size_t n_names;
+    bool is_folders; /* of two folders */
 };
 
 static void pairs_finish(struct pairs *pairs)
@@ -135,6 +136,7 @@ static enum sheen_status find_pairs(struct pairs *pairs, const struct options *o
         return SHEEN_OK;
     }
     enum sheen_status status = SHEEN_OK;
+    pairs->is_folders = true;
     for (int side = 0; side < 2 && !status; side++)
         status = add_folder(pairs, paths[side], side, error);
     if (!status && pairs->n == 0)
@@ -158,8 +160,10 @@ static enum sheen_status ask(struct client *client, const struct options *option
     for (int k = 0; k < SHEEN_N_COMPARE_MEASURES; k++)
         compare.limits[k] = pair->limits[k].value;
     do {
+        pair->failed_side = -1;
         for (int k = 0; k < 2 && !status; k++)
-            status = client_add_model(client, pair->files[k], pair->ids[k]);
+            if ((status = client_add_model(client, pair->files[k], pair->ids[k])))
+                pair->failed_side = k;
         if (status)
             continue;
         memcpy(request.model_id, pair->ids[0], SHEEN_ID_BYTES);
@@ -196,6 +200,63 @@ static enum sheen_status compare_pair(struct client *client, const struct option
     if (!status)
         comparison_judge(pair);
     return status;
+}
+
+/* Which side's model the daemon cannot use either when it is asked about that model alone; -1: none. */
+static int find_bad_side(const struct client *client, const struct compared_pair *pair,
+                         enum sheen_status status)
+{
+    struct sheen_error error;
+    for (int k = 0; k < 2; k++) {
+        struct sheen_model_info info = SHEEN_MODEL_INFO_DEFAULTS;
+        if (sheen_query_model(client->session, pair->ids[k], NULL, &info, &error) == status)
+            return k;
+    }
+    return -1;
+}
+
+/* Notes why a pair of two folders failed, so that the others can be compared. Returns the status unless that is
+ * possible: without a session no pair can be compared, and wrong options are wrong for all. */
+static enum sheen_status note_failure(const struct client *client, struct pairs *pairs,
+                                      struct compared_pair *pair, enum sheen_status status)
+{
+    static const char *const sides[] = {"", "the old file: ", "the new file: "};
+    char *text = NULL;
+    if (!pairs->is_folders || sheen_status_is_fatal(status) || sheen_status_exit_code(status) < 3)
+        return status;
+    if (pair->failed_side < 0 && status == SHEEN_BAD_MODEL)
+        pair->failed_side = find_bad_side(client, pair, status);
+    if (asprintf(&text, "%s%s", sides[pair->failed_side + 1], client->error.text) < 0)
+        return SHEEN_NO_MEMORY;
+    pair->failure = keep(pairs, text);
+    pair->status = status;
+    pair->verdict = COMPARISON_FAILED;
+    return pair->failure ? SHEEN_OK : status;
+}
+
+/* Compares all pairs. */
+static enum sheen_status compare_all(struct client *client, const struct options *options,
+                                     struct pairs *pairs)
+{
+    enum sheen_status status = SHEEN_OK;
+    for (size_t i = 0; i < pairs->n && !status; i++) {
+        status = compare_pair(client, options, &pairs->list[i]);
+        if (status)
+            status = note_failure(client, pairs, &pairs->list[i], status);
+    }
+    return status;
+}
+
+/* The status of the first pair that failed, with all that failed in client->error. */
+static enum sheen_status first_failure(struct client *client, const struct pairs *pairs)
+{
+    size_t n_failed = comparison_count(pairs->list, pairs->n, COMPARISON_FAILED);
+    for (size_t i = 0; i < pairs->n; i++)
+        if (pairs->list[i].verdict == COMPARISON_FAILED)
+            return failure_set(&client->error, pairs->list[i].status,
+                               "%zu of %zu pairs failed, first %.100s: %.400s", n_failed, pairs->n,
+                               pairs->list[i].name, pairs->list[i].failure);
+    return SHEEN_OK;
 }
 
 /* --- the answer */
@@ -237,33 +298,28 @@ static enum sheen_status print(struct client *client, const struct options *opti
     return status;
 }
 
-/* Connects with the first model that a pair has. */
-static enum sheen_status open_session(struct client *client, const struct options *options,
-                                      const struct pairs *pairs)
+static int run(const struct options *given)
 {
-    struct options first = *options;
-    first.model = pairs->list[0].files[pairs->list[0].files[0] ? 0 : 1];
-    return client_init(client, &first);
-}
-
-static int run(const struct options *options)
-{
+    struct options own = *given;
+    const struct options *options = &own;
     struct client client = {.session = NULL};
     struct pairs pairs = {.list = NULL};
     const char *const files[] = {options->junit, options->markdown};
-    bool differs = false;
     enum sheen_status status = find_pairs(&pairs, options, &client.error);
     for (size_t i = 0; i < sizeof(files) / sizeof(*files) && !status; i++)
         if (files[i])
             status = file_check_writable(files[i], &client.error);
+    if (pairs.is_folders)
+        own.model = NULL; /* a bad first model must not keep the session from others */
     if (!status)
-        status = open_session(&client, options, &pairs);
-    for (size_t i = 0; i < pairs.n && !status; i++) {
-        status = compare_pair(&client, options, &pairs.list[i]);
-        differs = differs || pairs.list[i].verdict != COMPARISON_SAME;
-    }
+        status = client_init(&client, options);
+    if (!status)
+        status = compare_all(&client, options, &pairs);
     if (!status)
         status = print(&client, options, &pairs);
+    if (!status)
+        status = first_failure(&client, &pairs);
+    bool differs = comparison_count(pairs.list, pairs.n, COMPARISON_SAME) < pairs.n;
     pairs_finish(&pairs);
     int code = client_finish(&client, status);
     return code == 0 && differs ? DIFFERS : code;
@@ -359,7 +415,8 @@ const struct command COMMAND_COMPARE = {
         "Compares two models, or the models of two folders by their names: how far the surfaces\n"
         "are apart, and how normals, reflection lines and, if asked, curvature differ, computed\n"
         "on the surfaces themselves and in both directions. Ends with 1 if a limit is exceeded,\n"
-        "or if a folder lacks a model of the other one.",
+        "or if a folder lacks a model of the other one. A pair of two folders that cannot be\n"
+        "compared is reported as failed, the others are compared, and its code comes at the end.",
     .tables = TABLES,
     .examples =
         "  sheen compare old/hood.obj new/hood.obj\n"

@@ -206,7 +206,12 @@ static enum sheen_status put_pair(struct report *report, const struct compared_p
     put_text(page, pair->name);
     fprintf(page, ": <span class=\"%s\">%s</span></h2>\n", is_same ? "same" : "bad",
             comparison_verdict_name(pair->verdict));
-    if (!pair->files[0] || !pair->files[1])
+    if (pair->verdict == COMPARISON_FAILED) {
+        fputs("<p>", page);
+        put_text(page, pair->failure);
+        fputs("</p>\n", page);
+    }
+    if (!comparison_is_made(pair))
         return SHEEN_OK;
     put_table(page, pair);
     struct sheen_request request = report->options->request;
@@ -232,10 +237,9 @@ static enum sheen_status put_pair(struct report *report, const struct compared_p
 
 static void put_overview(FILE *page, const struct compared_pair *pairs, size_t n)
 {
-    size_t n_same = 0;
-    for (size_t i = 0; i < n; i++)
-        n_same += pairs[i].verdict == COMPARISON_SAME;
-    fprintf(page, "<h1>sheen compare: %zu same, %zu not</h1>\n<ul>\n", n_same, n - n_same);
+    char counts[COMPARISON_COUNTS_BYTES];
+    comparison_counts(pairs, n, counts);
+    fprintf(page, "<h1>sheen compare: %s</h1>\n<ul>\n", counts);
     for (size_t i = 0; i < n; i++) {
         fprintf(page, "<li><a href=\"#p%zu\">", i);
         put_text(page, pairs[i].name);

@@ -16,8 +16,28 @@ static const char *unit_of(enum comparison_item item)
 
 const char *comparison_verdict_name(enum comparison_verdict verdict)
 {
-    static const char *const names[] = {"same", "differs", "added", "deleted"};
+    static const char *const names[] = {"same", "differs", "added", "deleted", "failed"};
     return names[verdict];
+}
+
+size_t comparison_count(const struct compared_pair *pairs, size_t n,
+                        enum comparison_verdict verdict)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < n; i++)
+        count += pairs[i].verdict == verdict;
+    return count;
+}
+
+void comparison_counts(const struct compared_pair *pairs, size_t n,
+                       char text[static COMPARISON_COUNTS_BYTES])
+{
+    size_t same = comparison_count(pairs, n, COMPARISON_SAME),
+           failed = comparison_count(pairs, n, COMPARISON_FAILED);
+    int used =
+        snprintf(text, COMPARISON_COUNTS_BYTES, "%zu same, %zu not", same, n - same - failed);
+    if (failed)
+        snprintf(text + used, COMPARISON_COUNTS_BYTES - (size_t)used, ", %zu failed", failed);
 }
 
 const struct sheen_compared_side *comparison_worst_side(const struct sheen_comparison *comparison,
@@ -147,7 +167,9 @@ static void print_pair(const struct compared_pair *pair)
 {
     const struct sheen_comparison *comparison = &pair->comparison;
     printf("%s: %s\n", pair->name, comparison_verdict_name(pair->verdict));
-    if (!pair->files[0] || !pair->files[1])
+    if (pair->verdict == COMPARISON_FAILED)
+        printf("  %s\n", pair->failure);
+    if (!comparison_is_made(pair))
         return;
     printf("  %-15s %11s %10s %3s %10s %10s %10s  %s\n", "", "worst", "limit", "", "rms", "p99",
            "area out", "where, on the old surface");
@@ -173,11 +195,10 @@ static void print_pair(const struct compared_pair *pair)
 
 void comparison_print(const struct compared_pair *pairs, size_t n)
 {
-    size_t n_same = 0;
-    for (size_t i = 0; i < n; i++) {
+    char counts[COMPARISON_COUNTS_BYTES];
+    for (size_t i = 0; i < n; i++)
         print_pair(&pairs[i]);
-        n_same += pairs[i].verdict == COMPARISON_SAME;
-    }
+    comparison_counts(pairs, n, counts);
     if (n > 1)
-        printf("%zu pairs: %zu same, %zu not\n", n, n_same, n - n_same);
+        printf("%zu pairs: %s\n", n, counts);
 }

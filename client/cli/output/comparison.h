@@ -16,6 +16,7 @@ enum comparison_verdict {
     COMPARISON_DIFFERS,
     COMPARISON_ADDED,   /* only the new file exists */
     COMPARISON_DELETED, /* only the old one */
+    COMPARISON_FAILED,  /* one of them is bad, or the comparison was not possible */
 };
 
 struct compared_pair {
@@ -24,10 +25,28 @@ struct compared_pair {
     uint8_t ids[2][SHEEN_ID_BYTES];
     bool has_unit; /* the file is in metres, from which the default limit of the distance comes */
     struct comparison_limit limits[COMPARISON_ITEMS];
-    struct sheen_comparison comparison; /* unless one is missing */
+    struct sheen_comparison comparison; /* if comparison_is_made() */
     enum comparison_verdict verdict;
     unsigned out; /* bit for each item that is out of tolerance */
+    /* With COMPARISON_FAILED: why, the status, and the side whose file is the reason, or -1. */
+    const char *failure;
+    enum sheen_status status;
+    int failed_side;
 };
+
+/* True if both files were compared: the pair has measures. */
+static inline bool comparison_is_made(const struct compared_pair *pair)
+{
+    return pair->verdict == COMPARISON_SAME || pair->verdict == COMPARISON_DIFFERS;
+}
+
+/* How many pairs have a verdict. */
+size_t comparison_count(const struct compared_pair *pairs, size_t n,
+                        enum comparison_verdict verdict);
+/* "3 same, 1 not", and ", 1 failed" if some are. */
+#define COMPARISON_COUNTS_BYTES 100
+void comparison_counts(const struct compared_pair *pairs, size_t n,
+                       char text[static COMPARISON_COUNTS_BYTES]);
 
 const char *comparison_verdict_name(enum comparison_verdict verdict);
 

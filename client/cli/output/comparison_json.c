@@ -70,7 +70,7 @@ static void write_file(struct json *json, const char *key, const struct compared
         return;
     json_object_begin(json, key);
     json_string(json, "file", pair->files[k]);
-    if (pair->files[!k])
+    if (comparison_is_made(pair))
         json_hex(json, "sha256", pair->ids[k], SHEEN_ID_BYTES);
     json_object_end(json);
 }
@@ -113,14 +113,24 @@ static void write_comparison(struct json *json, const struct compared_pair *pair
     json_string(json, "server", comparison->server);
 }
 
+static void write_failure(struct json *json, const struct compared_pair *pair)
+{
+    json_object_begin(json, "error");
+    if (pair->failed_side >= 0)
+        json_string(json, "side", pair->failed_side ? "new" : "old");
+    json_uint(json, "code", (uint64_t)sheen_status_exit_code(pair->status));
+    json_string(json, "text", pair->failure);
+    json_object_end(json);
+}
+
 void comparison_write_json(struct json *json, const struct compared_pair *pairs, size_t n)
 {
-    bool is_same = true;
-    for (size_t i = 0; i < n; i++)
-        is_same = is_same && pairs[i].verdict == COMPARISON_SAME;
+    const char *verdict = comparison_count(pairs, n, COMPARISON_FAILED)      ? "failed"
+                          : comparison_count(pairs, n, COMPARISON_SAME) == n ? "same"
+                                                                             : "differs";
     json_object_begin(json, NULL);
     json_string(json, "schema", SCHEMA);
-    json_string(json, "verdict", is_same ? "same" : "differs");
+    json_string(json, "verdict", verdict);
     json_array_begin(json, "pairs");
     for (size_t i = 0; i < n; i++) {
         json_object_begin(json, NULL);
@@ -128,7 +138,9 @@ void comparison_write_json(struct json *json, const struct compared_pair *pairs,
         json_string(json, "verdict", comparison_verdict_name(pairs[i].verdict));
         write_file(json, "old", &pairs[i], 0);
         write_file(json, "new", &pairs[i], 1);
-        if (pairs[i].files[0] && pairs[i].files[1])
+        if (pairs[i].verdict == COMPARISON_FAILED)
+            write_failure(json, &pairs[i]);
+        if (comparison_is_made(&pairs[i]))
             write_comparison(json, &pairs[i]);
         json_object_end(json);
     }

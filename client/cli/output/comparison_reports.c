@@ -14,7 +14,11 @@ static size_t make_cases(const struct compared_pair *pair, struct junit_case *ca
                          char (*lines)[COMPARISON_LINE_BYTES])
 {
     size_t n = 0;
-    if (!pair->files[0] || !pair->files[1]) {
+    if (pair->verdict == COMPARISON_FAILED) {
+        cases[0] = (struct junit_case){.name = "files", .failure = pair->failure, .is_error = true};
+        return 1;
+    }
+    if (!comparison_is_made(pair)) {
         cases[0] = (struct junit_case){.name = "files",
                                        .failure = pair->files[0]
                                                       ? "deleted: there is no new file of this name"
@@ -73,11 +77,11 @@ static void put_name(FILE *out, const char *name)
     }
 }
 
-/* How far the worst item of a pair is over its limit; infinity for a missing file. */
+/* How far the worst item of a pair is over its limit; infinity for a missing or bad file. */
 static double badness(const struct compared_pair *pair)
 {
     double most = 0;
-    if (!pair->files[0] || !pair->files[1])
+    if (!comparison_is_made(pair))
         return INFINITY;
     for (int k = 0; k < COMPARISON_ITEMS; k++)
         if (pair->out >> k & 1)
@@ -101,15 +105,26 @@ static void put_pair(FILE *out, const struct compared_pair *pair)
     put_name(out, pair->name);
     fprintf(out, " | %s |", comparison_verdict_name(pair->verdict));
     for (int k = 0; k < COMPARISON_ITEMS; k++) {
-        double value = pair->files[0] && pair->files[1]
-                           ? comparison_value(pair, (enum comparison_item)k)
-                           : (double)NAN;
+        double value = comparison_is_made(pair) ? comparison_value(pair, (enum comparison_item)k)
+                                                : (double)NAN;
         if (isnan(value))
             fputs("  |", out);
         else
             fprintf(out, pair->out >> k & 1 ? " **%.3g** |" : " %.3g |", value);
     }
     fputc('\n', out);
+}
+
+/* Why a pair has no numbers, below the table. */
+static void put_failure(FILE *out, const struct compared_pair *pair)
+{
+    if (pair->verdict != COMPARISON_FAILED)
+        return;
+    fputs("\n", out);
+    put_name(out, pair->name);
+    fputs(": ", out);
+    put_name(out, pair->failure);
+    fputs("\n", out);
 }
 
 char *comparison_markdown(const struct compared_pair *pairs, size_t n, size_t *n_bytes)
@@ -121,13 +136,12 @@ char *comparison_markdown(const struct compared_pair *pairs, size_t n, size_t *n
         free(sorted);
         return NULL;
     }
-    size_t n_same = 0;
-    for (size_t i = 0; i < n; i++) {
+    char counts[COMPARISON_COUNTS_BYTES];
+    for (size_t i = 0; i < n; i++)
         sorted[i] = &pairs[i];
-        n_same += pairs[i].verdict == COMPARISON_SAME;
-    }
+    comparison_counts(pairs, n, counts);
     qsort(sorted, n, sizeof(*sorted), by_badness);
-    fprintf(out, "### sheen compare: %zu same, %zu not\n\n| pair | verdict |", n_same, n - n_same);
+    fprintf(out, "### sheen compare: %s\n\n| pair | verdict |", counts);
     for (int k = 0; k < COMPARISON_ITEMS; k++)
         fprintf(out, " %s |", comparison_key((enum comparison_item)k));
     fputs("\n|---|---|", out);
@@ -136,6 +150,8 @@ char *comparison_markdown(const struct compared_pair *pairs, size_t n, size_t *n
     fputc('\n', out);
     for (size_t i = 0; i < n && i < MOST_ROWS; i++)
         put_pair(out, sorted[i]);
+    for (size_t i = 0; i < n && i < MOST_ROWS; i++)
+        put_failure(out, sorted[i]);
     if (n > MOST_ROWS)
         fprintf(out, "\nThe %d worst of %zu pairs.\n", MOST_ROWS, n);
     free(sorted);

@@ -1,6 +1,5 @@
 #include "client/cli/output/junit.h"
 
-#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <time.h>
@@ -57,25 +56,27 @@ static void put_case(FILE *out, const struct junit_case *test, const char *suite
         fputs(" time=\"0\"/>\n", out);
         return;
     }
-    fputs(" time=\"0\">\n      <failure", out);
+    const char *element = test->is_error ? "error" : "failure";
+    fprintf(out, " time=\"0\">\n      <%s", element);
     put_attribute(out, "message", test->failure);
-    put_attribute(out, "type", "limit");
+    put_attribute(out, "type", test->is_error ? "error" : "limit");
     fputc('>', out);
     put(out, test->details ? test->details : test->failure, false);
-    fputs("</failure>\n    </testcase>\n", out);
+    fprintf(out, "</%s>\n    </testcase>\n", element);
 }
 
 static void put_suite(FILE *out, const struct junit_suite *suite, size_t id, const char *when)
 {
-    size_t failures = 0;
+    size_t failures = 0, errors = 0;
     for (size_t i = 0; i < suite->n_cases; i++)
-        failures += suite->cases[i].failure != NULL;
+        if (suite->cases[i].failure)
+            (*(suite->cases[i].is_error ? &errors : &failures))++;
     fputs("  <testsuite", out);
     put_attribute(out, "name", suite->name);
     fprintf(out,
             " package=\"sheen\" id=\"%zu\" timestamp=\"%s\" hostname=\"localhost\" tests=\"%zu\" "
-            "failures=\"%zu\" errors=\"0\" time=\"%.3f\">\n    <properties/>\n",
-            id, when, suite->n_cases, failures, suite->seconds);
+            "failures=\"%zu\" errors=\"%zu\" time=\"%.3f\">\n    <properties/>\n",
+            id, when, suite->n_cases, failures, errors, suite->seconds);
     for (size_t i = 0; i < suite->n_cases; i++)
         put_case(out, &suite->cases[i], suite->name);
     fputs("    <system-out/>\n    <system-err/>\n  </testsuite>\n", out);

@@ -3,6 +3,7 @@
 #ifndef SHEEN_CLIENT_JUNIT_H
 #define SHEEN_CLIENT_JUNIT_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -10,6 +11,7 @@ struct junit_case {
     const char *name;
     const char *failure; /* one line; NULL: the case has passed */
     const char *details; /* lines below the failure; NULL: none */
+    bool is_error;       /* the failure is that the test could not be run */
 };
 
 struct junit_suite {
