@@ -76,6 +76,8 @@ class CompareCommand(Comparing):
         self.compare(self.flat, self.flat, "--server", "unix:/nowhere", code=4)
         self.assertIn("NEW, is missing", self.compare(self.flat, code=2).stderr)
         self.assertIn("two models or two folders", self.compare(self.flat, self.folder, code=2).stderr)
+        for pair in ((self.folder, missing), (missing, self.folder)):
+            self.assertEqual(self.compare(*pair, code=3).stderr, f"sheen: {missing}: No such file or directory\n")
 
     def test_limits(self):
         loose = ("--limit", "normal_deg=off", "--limit", "lines=off")
@@ -87,6 +89,14 @@ class CompareCommand(Comparing):
         for wrong in ("distance", "distance=", "distance=x", "distance=0", "speed=1", "distance=1@2", "distance=1@101%",
                       "lines=off@1%", "normal_deg=181", "distance=nan"):
             self.assertIn("--limit", self.compare(self.flat, self.flat, "--limit", wrong, code=2).stderr, wrong)
+        for wrong in ("normal_deg=0.05@", "normal_deg=0.05@1", "normal_deg=0.05@101%"):
+            text = self.compare(self.flat, self.flat, "--limit", wrong, code=2).stderr
+            self.assertEqual(text.count(wrong), 1, text)
+            self.assertIn("as a percentage from 0% to 100%", text)
+        # A face is missing, which is less than 1 square unit and about 2 % of the area.
+        opened = self.write("opened.obj", sheet(without=(2, 2)))
+        for area, code in (("0", 1), ("0@1%", 1), ("0@10%", 0), ("2", 0), ("off", 0)):
+            self.compare(self.flat, opened, *loose, "--limit", f"uncovered_area={area}", code=code)
 
     def test_json(self):
         answer = self.json(self.flat, self.lifted, "--limit", "curvature=0.1", code=1)

@@ -123,6 +123,10 @@ static enum sheen_status find_pairs(struct pairs *pairs, const struct options *o
 {
     const char *const paths[2] = {options->model, options->argument};
     bool folders[2] = {is_folder(paths[0]), is_folder(paths[1])};
+    struct stat status_of;
+    for (int side = 0; side < 2; side++)
+        if (folders[!side] && !folders[side] && stat(paths[side], &status_of) != 0)
+            return failure_set(error, SHEEN_BAD_MODEL, "%.300s: %s", paths[side], strerror(errno));
     if (folders[0] != folders[1])
         return failure_set(error, SHEEN_BAD_ARGUMENT,
                            "OLD and NEW must be two models or two folders of models");

@@ -5,19 +5,22 @@
 static const struct {
     const char *key;
     enum range_name range;
+    bool is_zero_allowed; /* 0 as a limit: nothing may exceed it */
 } ITEMS[COMPARISON_ITEMS] = {
     [SHEEN_COMPARE_DISTANCE] = {"distance", RANGE_COMPARE_DISTANCE},
     [SHEEN_COMPARE_NORMAL] = {"normal_deg", RANGE_COMPARE_NORMAL},
     [SHEEN_COMPARE_LINES] = {"lines", RANGE_COMPARE_LINES},
     [SHEEN_COMPARE_LINE_LENGTH] = {"line_length", RANGE_COMPARE_LENGTH},
     [SHEEN_COMPARE_CURVATURE] = {"curvature", RANGE_COMPARE_CURVATURE},
-    [COMPARISON_MISSING] = {"uncovered_area", RANGE_COMPARE_LENGTH},
+    [COMPARISON_MISSING] = {"uncovered_area", RANGE_COMPARE_LENGTH, true},
     [COMPARISON_ROTATION] = {"rotation_deg", RANGE_COMPARE_NORMAL},
 };
 
-enum range_name comparison_range(enum comparison_item item)
+struct range comparison_range(enum comparison_item item)
 {
-    return ITEMS[item].range;
+    struct range range = RANGES[ITEMS[item].range];
+    range.above_least = range.above_least && !ITEMS[item].is_zero_allowed;
+    return range;
 }
 
 const char *comparison_key(enum comparison_item item)

@@ -22,8 +22,8 @@ struct comparison_limit {
     bool is_off;   /* not judged */
 };
 
-/* The range of an item's limit; that of an area is one of lengths. */
-enum range_name comparison_range(enum comparison_item item);
+/* The range of an item's limit; that of an area is one of lengths, and 0. */
+struct range comparison_range(enum comparison_item item);
 /* The key of an item, as on the command line and in JSON. */
 const char *comparison_key(enum comparison_item item);
 /* The item of a key of n bytes; COMPARISON_ITEMS: none. */

@@ -36,15 +36,14 @@ bool comparison_limit_read(struct comparison_limit limits[static COMPARISON_ITEM
     char value[64];
     size_t n = at ? (size_t)(at - equals - 1) : strlen(equals + 1);
     if (n == 0 || n >= sizeof(value))
-        return options_refuse(why, "'%.40s' has no number for its limit", text);
+        return options_refuse(why, "has no number behind =, or one that is too long");
     memcpy(value, equals + 1, n);
     value[n] = 0;
     *limit = (struct comparison_limit){.is_given = true, .is_off = strcmp(value, "off") == 0};
     if (at && (limit->is_off || item == COMPARISON_ROTATION || !read_share(at + 1, &limit->share)))
         return options_refuse(why,
-                              "'%.40s': behind @ is the share of the area that may exceed the "
-                              "limit, as 0.1%%",
-                              text);
-    return limit->is_off ||
-           options_number(&RANGES[comparison_range(item)], value, &limit->value, why);
+                              "needs behind @ the share of the area that may exceed the limit, as "
+                              "a percentage from 0%% to 100%%; off and rotation_deg have none");
+    const struct range range = comparison_range(item);
+    return limit->is_off || options_number(&range, value, &limit->value, why);
 }
