@@ -79,6 +79,16 @@ class CompareCommand(Comparing):
         for pair in ((self.folder, missing), (missing, self.folder)):
             self.assertEqual(self.compare(*pair, code=3).stderr, f"sheen: {missing}: No such file or directory\n")
 
+    def test_same_is_more_than_within_limits(self):
+        same = self.compare(self.flat, self.flat, code=0).stdout
+        self.assertIn("flat.obj: same\n", same)
+        self.assertNotRegex(same, r"face \d")  # a difference of 0 has no place
+        wide = ("--limit", "distance=1", "--limit", "normal_deg=90", "--limit", "lines=off")
+        near = self.compare(self.flat, self.lifted, *wide, code=0).stdout
+        self.assertIn("lifted.obj: within limits\n", near)
+        self.assertRegex(near, r"distance +0\.0044.* face \d+\n")
+        self.assertRegex(self.compare(self.lifted, self.flat, *wide, code=0).stdout, r"distance +-0\.0044")
+
     def test_limits(self):
         loose = ("--limit", "normal_deg=off", "--limit", "lines=off")
         for factor, code in ((0.999, 1), (1.001, 0)):
@@ -161,7 +171,7 @@ class CompareCommand(Comparing):
         self.junit(report, strange)
         with open(summary, encoding="utf-8") as file:
             text = file.read()
-        self.assertIn("1 same, 4 not", text)
+        self.assertIn("1 within limits, 4 not", text)
         self.assertIn("a&#60;b&#62;&#38;&#34;c&#34;&#124;'??&#91;31m.obj | differs |", text)
         rows = [line for line in text.splitlines() if line.startswith("| ")]
         self.assertEqual(len({row.count("|") for row in rows}), 1)
@@ -199,12 +209,12 @@ class CompareCommand(Comparing):
         for path in (summary, os.path.join(pages, "index.html")):
             with open(path, encoding="utf-8") as file:
                 text = file.read()
-            self.assertIn("1 same, 1 not, 3 failed", text)
+            self.assertIn("1 within limits, 1 not, 3 failed", text)
             self.assertEqual(text.count("the new file: "), 1)
         done = self.compare(old, new, code=3)
         self.assertIn("a.obj: failed\n  the old file: ", done.stdout)
         self.assertIn("bent.obj: differs\n", done.stdout)
-        self.assertIn("5 pairs: 1 same, 1 not, 3 failed", done.stdout)
+        self.assertIn("5 pairs: 1 within limits, 1 not, 3 failed", done.stdout)
         self.assertRegex(done.stderr, "3 of 5 pairs failed, first a.obj: the old file: ")
         self.compare(old, new, "--server", "unix:/nowhere", code=4)
 

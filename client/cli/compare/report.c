@@ -205,7 +205,7 @@ static enum sheen_status put_pair(struct report *report, const struct compared_p
     fprintf(page, "<h2 id=\"p%zu\">", p);
     put_text(page, pair->name);
     fprintf(page, ": <span class=\"%s\">%s</span></h2>\n", is_same ? "same" : "bad",
-            comparison_verdict_name(pair->verdict));
+            comparison_verdict_text(pair));
     if (pair->verdict == COMPARISON_FAILED) {
         fputs("<p>", page);
         put_text(page, pair->failure);
@@ -243,7 +243,7 @@ static void put_overview(FILE *page, const struct compared_pair *pairs, size_t n
     for (size_t i = 0; i < n; i++) {
         fprintf(page, "<li><a href=\"#p%zu\">", i);
         put_text(page, pairs[i].name);
-        fprintf(page, "</a>: %s</li>\n", comparison_verdict_name(pairs[i].verdict));
+        fprintf(page, "</a>: %s</li>\n", comparison_verdict_text(&pairs[i]));
     }
     fputs("</ul>\n", page);
 }

@@ -34,8 +34,8 @@ void comparison_counts(const struct compared_pair *pairs, size_t n,
 {
     size_t same = comparison_count(pairs, n, COMPARISON_SAME),
            failed = comparison_count(pairs, n, COMPARISON_FAILED);
-    int used =
-        snprintf(text, COMPARISON_COUNTS_BYTES, "%zu same, %zu not", same, n - same - failed);
+    int used = snprintf(text, COMPARISON_COUNTS_BYTES, "%zu within limits, %zu not", same,
+                        n - same - failed);
     if (failed)
         snprintf(text + used, COMPARISON_COUNTS_BYTES - (size_t)used, ", %zu failed", failed);
 }
@@ -76,6 +76,14 @@ double comparison_share_out(const struct compared_pair *pair, enum comparison_it
     return most;
 }
 
+const char *comparison_verdict_text(const struct compared_pair *pair)
+{
+    for (int k = 0; k < COMPARISON_ITEMS && pair->verdict == COMPARISON_SAME; k++)
+        if (fabs(comparison_value(pair, (enum comparison_item)k)) > 0)
+            return "within limits";
+    return comparison_verdict_name(pair->verdict);
+}
+
 /* A limit without a share is exceeded by one place, one with a share by more area than that. */
 static bool is_out(const struct compared_pair *pair, enum comparison_item item)
 {
@@ -107,7 +115,7 @@ void comparison_line(const struct compared_pair *pair, enum comparison_item item
     if (item < (enum comparison_item)SHEEN_N_COMPARE_MEASURES) {
         const struct sheen_compared_measure *measure =
             &comparison_worst_side(comparison, item)->measures[item];
-        at = measure->is_known ? &measure->at[0] : NULL;
+        at = measure->is_known && measure->worst != 0 ? &measure->at[0] : NULL;
     } else if (item == COMPARISON_MISSING) {
         bool is_new = comparison->sides[1].area_uncovered > comparison->sides[0].area_uncovered;
         const struct sheen_compared_side *side = &comparison->sides[is_new];
@@ -158,15 +166,18 @@ static void print_item(const struct compared_pair *pair, enum comparison_item it
     }
     const struct sheen_compared_measure *measure =
         &comparison_worst_side(comparison, item)->measures[item];
-    printf(" %10.3g %10.3g %8.3g %%  %.6g,%.6g,%.6g face %u\n", measure->rms, measure->p99,
-           100 * comparison_share_out(pair, item), measure->at[0].position[0],
-           measure->at[0].position[1], measure->at[0].position[2], measure->at[0].face);
+    printf(" %10.3g %10.3g %8.3g %%", measure->rms, measure->p99,
+           100 * comparison_share_out(pair, item));
+    if (measure->worst != 0)
+        printf("  %.6g,%.6g,%.6g face %u", measure->at[0].position[0], measure->at[0].position[1],
+               measure->at[0].position[2], measure->at[0].face);
+    printf("\n");
 }
 
 static void print_pair(const struct compared_pair *pair)
 {
     const struct sheen_comparison *comparison = &pair->comparison;
-    printf("%s: %s\n", pair->name, comparison_verdict_name(pair->verdict));
+    printf("%s: %s\n", pair->name, comparison_verdict_text(pair));
     if (pair->verdict == COMPARISON_FAILED)
         printf("  %s\n", pair->failure);
     if (!comparison_is_made(pair))

@@ -43,12 +43,14 @@ static inline bool comparison_is_made(const struct compared_pair *pair)
 /* How many pairs have a verdict. */
 size_t comparison_count(const struct compared_pair *pairs, size_t n,
                         enum comparison_verdict verdict);
-/* "3 same, 1 not", and ", 1 failed" if some are. */
+/* "3 within limits, 1 not", and ", 1 failed" if some are. */
 #define COMPARISON_COUNTS_BYTES 100
 void comparison_counts(const struct compared_pair *pairs, size_t n,
                        char text[static COMPARISON_COUNTS_BYTES]);
 
 const char *comparison_verdict_name(enum comparison_verdict verdict);
+/* The verdict for people: "same" only where all measures are 0, else "within limits". */
+const char *comparison_verdict_text(const struct compared_pair *pair);
 
 /* Takes the limits that the daemon used into pair->limits, and judges the pair. */
 void comparison_judge(struct compared_pair *pair);

@@ -103,7 +103,7 @@ static void put_pair(FILE *out, const struct compared_pair *pair)
 {
     fputs("| ", out);
     put_name(out, pair->name);
-    fprintf(out, " | %s |", comparison_verdict_name(pair->verdict));
+    fprintf(out, " | %s |", comparison_verdict_text(pair));
     for (int k = 0; k < COMPARISON_ITEMS; k++) {
         double value = comparison_is_made(pair) ? comparison_value(pair, (enum comparison_item)k)
                                                 : (double)NAN;
