@@ -545,7 +545,28 @@ class Computations(DaemonCase):
             self.assertEqual(closed.vertices["faces"].tolist(), [3] * 8)
 
 
+LOOSE = {"distance": 1, "normal_deg": 90, "lines": "off"}
+LIMITS_OF_COMPARISON = (
+    {}, LOOSE, {**LOOSE, "distance": 1e-5}, {**LOOSE, "distance": "1e-5@90%"}, {**LOOSE, "distance": "1e-5@1%"},
+    {**LOOSE, "distance": (1e-5, 0.9)}, {**LOOSE, "normal_deg": "0.01@99%"}, {**LOOSE, "normal_deg": 0.01},
+    {**LOOSE, "rotation_deg": 1e-9}, {**LOOSE, "uncovered_area": 0})
+
+
 class Comparisons(DaemonCase):
+    def verdict(self, old, new, limits):
+        """What the command says of the same files and limits."""
+        with tempfile.TemporaryDirectory(prefix="sheen-test-") as folder:
+            for name, data in (("old.obj", old), ("new.obj", new)):
+                with open(os.path.join(folder, name), "wb") as file:
+                    file.write(data)
+            texts = [f"--limit={name}=" + (f"{limit[0]}@{limit[1] * 100}%" if isinstance(limit, tuple) else str(limit))
+                     for name, limit in limits.items()]
+            done = subprocess.run([SHEEN, "compare", "old.obj", "new.obj", "--align", "--json", "--samples=20000",
+                                   "--server", self.daemon.unix, *texts], cwd=folder, capture_output=True, text=True,
+                                  timeout=120)
+        self.assertLess(done.returncode, 2, done.stderr)
+        return json.loads(done.stdout)["verdict"]
+
     def test_a_moved_vertex(self):
         """A regular vertex takes the surface with it by 4/9 of its way."""
         flat = re.sub(rb"(v \S+ \S+) \S+", rb"\1 0", grid(6))
@@ -569,6 +590,13 @@ class Comparisons(DaemonCase):
             self.assertTrue(np.allclose(same.alignment.rotation, np.eye(3), atol=1e-9))
             self.assertIsNone(found.alignment)
             self.assertAlmostEqual(same.old.area, same.new.area)
+            for limits in LIMITS_OF_COMPARISON:
+                mine = session.compare(old, new, samples=20000, align=True, limits=limits)
+                self.assertEqual(mine.differs, self.verdict(flat, b"\n".join(rows), limits) == "differs", limits)
+            for limits in ({"normal_deg": "1@"}, {"lines": "1@2"}, {"distance": "1@101%"}, {"distance": (1, 2)},
+                           {"rotation_deg": "1@1%"}, {"uncovered_area": -1}, {"lines": "x"}):
+                with self.assertRaisesRegex(sheen.BadArgument, "limits"):
+                    session.compare(old, new, limits=limits)
             with self.assertRaisesRegex(sheen.BadArgument, "no measure normal"):
                 session.compare(old, new, limits={"normal": 1})
             for limits in ({"distance": -1}, {"normal_deg": 181}, {"lines": float("nan")}):

@@ -1,12 +1,14 @@
 """How far two surfaces differ: the answer of Session.compare() (protocol/README.md, "COMPARE")."""
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
-from typing import TypedDict
+from typing import Any, NamedTuple, Tuple, TypedDict, Union
 
 import numpy as np
 
 from sheen import messages
+from sheen.errors import BadArgument
 from sheen.planes import Array
 from sheen.scene import Camera, Light, Lines
 from sheen.values import Vec3, tuple_of
@@ -14,13 +16,52 @@ from sheen.values import Vec3, tuple_of
 MEASURES = ("distance", "normal_deg", "lines", "line_length", "curvature")
 
 
+# A limit; "0.05@0.1%" or (0.05, 0.001) with the share of the area that may exceed it; "off": the measure is not judged.
+Limit = Union[float, str, Tuple[float, float]]
+
+
 class Limits(TypedDict, total=False):
-    """Beyond which a measure counts as out; each has a default of the daemon, and some are off without a limit."""
-    distance: float  # units
-    normal_deg: float
-    lines: float  # shift of the lines in spacings
-    line_length: float  # the same as a length on the surface
-    curvature: float  # share of the curvature
+    """Beyond which a measure counts as out; each has a default, and some are off without a limit."""
+    distance: Limit  # units
+    normal_deg: Limit
+    lines: Limit  # shift of the lines in spacings
+    line_length: Limit  # the same as a length on the surface
+    curvature: Limit  # share of the curvature
+    uncovered_area: Limit  # square units, of both sides together
+    rotation_deg: Limit  # with align, of its rotation; it has no share
+
+
+class Allowed(NamedTuple):
+    """A limit that was read. `value` is None for the default."""
+    value: float | None = None
+    share: float = 0.0
+    is_off: bool = False
+
+
+def read_limit(name: str, given: Any) -> Allowed:
+    """Reads a Limit, or None for the default. Raises BadArgument for what is no limit. The daemon checks the ranges of its measures."""
+    if given is None:
+        return Allowed()
+    try:
+        if given == "off":
+            return Allowed(is_off=True)
+        share = 0.0
+        if isinstance(given, str):
+            number, at, percent = given.partition("@")
+            if at and not percent.endswith("%"):
+                raise ValueError
+            value, share = float(number), float(percent[:-1]) / 100 if at else 0.0
+        elif isinstance(given, tuple):
+            value, share = (float(each) for each in given)
+        else:
+            value = float(given)
+        is_own = name in ("uncovered_area", "rotation_deg")
+        if not 0 <= share <= 1 or (share and name == "rotation_deg") or (is_own and not 0 <= value < math.inf):
+            raise ValueError
+    except (TypeError, ValueError):
+        raise BadArgument(f"limits[{name!r}]: {given!r} is no number, no pair (number, share) with a share from 0 to 1, "
+                          "and no text as '0.05', '0.05@0.1%' or 'off'") from None
+    return Allowed(value, share)
 
 
 @dataclass(frozen=True)
@@ -103,7 +144,7 @@ class Comparison:
     """`old` and `new`: what the samples of each surface found on the other one. `limits`: as they were used."""
     old: Side
     new: Side
-    limits: Limits
+    limits: dict[str, float]
     rewound: bool  # the new surface as a whole is wound the other way around
     diagonal: float  # of the old model's box
     distance_floor: float  # rounding of the tables
@@ -113,12 +154,43 @@ class Comparison:
     camera: Camera = field(repr=False)
     lights: list[Light] = field(repr=False)
     lines: Lines = field(repr=False)
+    allowed: dict[str, Allowed] = field(repr=False, default_factory=dict)
+
+    @property
+    def out(self) -> list[str]:
+        """The measures that exceed their limits, by the rules of `sheen compare`: without a share one place decides, with
+        a share more of the area than that."""
+        return [name for name in Limits.__annotations__ if self._is_out(name)]
 
     @property
     def differs(self) -> bool:
-        """True if a measure is out of its limit anywhere, or a part of a surface is missing on the other one."""
-        return any(side.area_uncovered > 0 or any(measure.area_out > 0 for measure in side.measures.values())
-                   for side in (self.old, self.new))
+        """True if a measure is out; the verdict of `sheen compare`."""
+        return bool(self.out)
+
+    def value(self, name: str) -> float | None:
+        """The value of a measure that is judged, over both sides; None: it has none."""
+        if name == "uncovered_area":
+            return self.old.area_uncovered + self.new.area_uncovered
+        if name == "rotation_deg":
+            return None if self.alignment is None else self.alignment.rotation_deg
+        worst = self.worst(name)
+        return None if worst is None else worst.worst
+
+    def share_out(self, name: str) -> float:
+        """The share of the area that is beyond the limit of a measure, of both sides the larger one."""
+        most = 0.0
+        for side in (self.old, self.new):
+            measure = side.measures.get(name)
+            area = side.area_uncovered if name == "uncovered_area" else measure.area_out if measure else 0.0
+            if side.area > 0:
+                most = max(most, area / side.area)
+        return most
+
+    def _is_out(self, name: str) -> bool:
+        allowed, value = self.allowed.get(name, Allowed()), self.value(name)
+        if allowed.is_off or value is None or not abs(value) > self.limits.get(name, math.inf):
+            return False
+        return allowed.share == 0 or self.share_out(name) > allowed.share
 
     def worst(self, name: str) -> Measure | None:
         """A measure of the side whose worst value has the larger magnitude."""
@@ -126,8 +198,11 @@ class Comparison:
         return max(found, key=lambda measure: abs(measure.worst)) if found else None
 
     @staticmethod
-    def of(body: messages.Compared) -> Comparison:
-        limits: Limits = {"distance": body.distance, "normal_deg": body.normal_deg, "lines": body.lines}
+    def of(body: messages.Compared, allowed: dict[str, Allowed]) -> Comparison:
+        limits = {"distance": body.distance, "normal_deg": body.normal_deg, "lines": body.lines}
+        for name, default in (("uncovered_area", 0.0), ("rotation_deg", 1.0)):
+            value = allowed[name].value
+            limits[name] = default if value is None else value
         if body.line_length is not None:
             limits["line_length"] = body.line_length
         if body.curvature is not None:
@@ -135,4 +210,4 @@ class Comparison:
         return Comparison(Side.of(body.old), Side.of(body.new), limits, body.rewound, body.diagonal, body.distance_floor,
                           body.normal_floor_deg, None if body.alignment is None else Alignment.of(body.alignment),
                           body.total_us, Camera.of(body.camera), [Light.of(light) for light in body.lights],
-                          Lines.of(body.lines_used))
+                          Lines.of(body.lines_used), allowed)

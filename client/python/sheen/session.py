@@ -10,7 +10,7 @@ import numpy as np
 
 from sheen import files, header, messages, picks, planes
 from sheen.breaks import Breaks
-from sheen.comparison import Comparison, Limits
+from sheen.comparison import Comparison, Limits, read_limit
 from sheen.connection import Connection, connect
 from sheen.curves import Curves
 from sheen.daemon import PrivateDaemon
@@ -507,14 +507,15 @@ class Session:
         unknown = sorted(set(given) - set(Limits.__annotations__))
         if unknown:
             raise BadArgument(f"there is no measure {', '.join(unknown)}; there are {', '.join(Limits.__annotations__)}")
+        allowed = {name: read_limit(name, given.get(name)) for name in Limits.__annotations__}
         scene = self._scene(old, options)
         asked = messages.Compare(scene=scene, new_sha256=self._id_of(new), align=True if align else None, samples=samples,
-                                 distance=given.get("distance"), normal_deg=given.get("normal_deg"),
-                                 lines=given.get("lines"), line_length=given.get("line_length"),
-                                 curvature=given.get("curvature"))
+                                 distance=allowed["distance"].value, normal_deg=allowed["normal_deg"].value,
+                                 lines=allowed["lines"].value, line_length=allowed["line_length"].value,
+                                 curvature=allowed["curvature"].value)
         body, _ = self._compute(Type.COMPARE, asked, Type.COMPARED, messages.Compared, lambda _: 0, progress)
         try:
-            return Comparison.of(body)
+            return Comparison.of(body, allowed)
         except Malformed as wrong:
             raise self._bad_peer(f"COMPARED: {wrong}") from None
 
