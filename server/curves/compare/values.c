@@ -69,6 +69,10 @@ static double unexplained(const struct comparison *comparison, double value,
     return value > limit && explained > limit ? fmax(value - explained, 0) : value;
 }
 
+/* Where a light's coordinate changes by less than this over the whole model, in spacings, its gradient is rounding, and
+ * a shift has no length on the surface. */
+static const double LEAST_CHANGE = 1e-3;
+
 /* The largest shift of all lights, in spacings and in length on the surface. */
 static void measure_lines(const struct comparison *comparison, struct comparison_values *at,
                           struct vec other_normal)
@@ -91,7 +95,9 @@ static void measure_lines(const struct comparison *comparison, struct comparison
             is_same = false;
             double density =
                 has_turns ? line_density(light, at->from.s, at->from.n, along, turn) : 0;
-            length = fmin(shift / density, comparison->result.size);
+            length = density * comparison->result.size > LEAST_CHANGE
+                         ? fmin(shift / density, comparison->result.size)
+                         : (double)NAN;
             shift = unexplained(comparison, shift, COMPARISON_LINES, density);
         }
         at->value[COMPARISON_LINES] = fmax(at->value[COMPARISON_LINES], shift);
