@@ -144,7 +144,8 @@ static const struct option_row ROWS[] = {
     {"gap", 0, "LENGTH",
      "largest distance of both sides of an edge, {}\n"
      "of the model (default: 1e-5 of the diagonal of the model's box). Border edges\n"
-     "that lie within 10 times this distance count as joined",
+     "count as joined within 10 times this distance or 1e-3 of the diagonal, whichever\n"
+     "is larger (1e-4 for two skins of a part, whose faces lie on the same side)",
      apply_gap, NULL},
     {"curvature", 0, "PERCENT",
      "largest jump of the curvature across an edge, {},\n"

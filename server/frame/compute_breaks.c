@@ -1,5 +1,4 @@
 /* FIND_BREAKS: where the surface's lines break. */
-#include <math.h>
 #include <stdio.h>
 
 #include "protocol/break_records.h"
@@ -13,19 +12,11 @@ static const sheen_Render *scene_of(const union compute_asked *asked)
     return &asked->find_breaks.scene;
 }
 
-static double diagonal_of(const struct limit_tables *tables)
-{
-    double diagonal = 0;
-    for (int i = 0; i < 3; i++)
-        diagonal = hypot(diagonal, tables->box_max[i] - tables->box_min[i]);
-    return diagonal;
-}
-
 /* The limits asked for, or their defaults (README.md of protocol/). */
 static struct break_limits limits_of(const struct compute *compute)
 {
     const sheen_FindBreaks *asked = &compute->asked.find_breaks;
-    const double gap = 1e-5 * diagonal_of(compute->tables[0]);
+    const double gap = 1e-5 * breaks_diagonal(compute->tables[0]);
     return (struct break_limits){
         .gap = asked->has_gap ? asked->gap
                : gap > 0      ? gap
@@ -91,7 +82,7 @@ static bool pack(struct compute *compute, struct error *error)
         .creases_length = counts->creases_length,
         .borders_length = counts->borders_length,
         .out_length = counts->out_length,
-        .diagonal = diagonal_of(compute->tables[0]),
+        .diagonal = breaks_diagonal(compute->tables[0]),
         .camera = scene_write_camera(&scene->camera),
         .lines = scene_write_lines(&scene->lines),
         .lights_count = (pb_size_t)scene->n_lights,

@@ -269,14 +269,14 @@ static void a_joint_has_its_curvature_jump(void **state)
 static void a_joint_has_its_gap(void **state)
 {
     (void)state;
-    const double gaps[] = {2e-5, 9e-5, 3e-4, 2e-3};
+    const double gaps[] = {2e-5, 9e-5, 3e-4, 2e-3, 4e-3};
     for (size_t i = 0; i < sizeof gaps / sizeof *gaps; i++) {
         const struct quadratic left = {0.1, 0.2, 0.3, 0}, right = {0.1, 0.2, 0.3, gaps[i]};
         struct limit_tables tables;
         build_joint(&left, &right, false, &tables);
         struct computation *computation = find(&tables);
         const struct breaks_found result = breaks_result(computation);
-        if (gaps[i] > 10 * LIMITS.gap) { /* too far apart to be one edge */
+        if (gaps[i] > 1e-3 * breaks_diagonal(&tables)) { /* too far apart to be one edge */
             assert_int_equal(result.n_edges, 0);
         } else {
             /* The nearest point is not the one above: the surface slopes there by up to 0.3. */
@@ -286,6 +286,78 @@ static void a_joint_has_its_gap(void **state)
             assert_int_equal((result.edges[0].over >> BREAK_GAP) & 1, gaps[i] > LIMITS.gap);
         }
         computation_destroy(computation);
+        limit_tables_finish(&tables);
+    }
+}
+
+/* The joints that are found, and how many of them exceed the limit of the gap. */
+static void expect_joints(struct limit_tables *tables, double limit, size_t n, size_t n_over)
+{
+    const struct break_limits limits = {limit, 0.1, 10};
+    struct error error = {0};
+    struct computation *computation = start(tables, &limits);
+    assert_true(computation_run(computation, &error));
+    const struct breaks_found result = breaks_result(computation);
+    size_t over = 0;
+    for (size_t i = 0; i < result.n_edges; i++)
+        over += result.edges[i].over >> BREAK_GAP & 1;
+    assert_int_equal(result.counts.joints, n);
+    assert_int_equal(over, n_over);
+    computation_destroy(computation);
+}
+
+static void a_stricter_limit_keeps_the_joints(void **state)
+{
+    (void)state;
+    const struct quadratic left = {0}, right = {0, 0, 0, 1e-4};
+    struct limit_tables tables;
+    build_joint(&left, &right, false, &tables);
+    expect_joints(&tables, 1e-8, 1, 1);
+    expect_joints(&tables, 5e-5, 1, 1);
+    expect_joints(&tables, 2e-4, 1, 0);
+    expect_joints(&tables, 1, 1, 0);
+    limit_tables_finish(&tables);
+}
+
+/* Two sheets of one face, the second one above the first: their four borders lie on the same side. */
+static void skins_of_a_part_are_no_joints(void **state)
+{
+    (void)state;
+    const double heights[] = {1e-3, 5e-5};
+    for (size_t i = 0; i < 2; i++) {
+        const struct quadratic low = {0}, high = {0, 0, 0, heights[i]};
+        static char text[10000];
+        struct limit_tables tables;
+        int used = add_patch(text, 0, 0, 0, &low, false);
+        used = add_patch(text, used, 16, 0, &high, false);
+        used += sprintf(text + used, "t interpolateboundary 1/0/0 0\n");
+        build(text, (size_t)used, &tables);
+        expect_joints(&tables, 1e-6, i == 0 ? 0 : 4, i == 0 ? 0 : 4);
+        expect_joints(&tables, 0.01, 4, 0);
+        limit_tables_finish(&tables);
+    }
+}
+
+/* A strip whose two borders are nearer than the distance, of one face and of two, for a strict and a loose limit. */
+static void a_thin_strip_has_no_joints(void **state)
+{
+    (void)state;
+    const int n_across[] = {1, 2};
+    for (size_t i = 0; i < 2; i++) {
+        char text[2000];
+        int used = 0, n = n_across[i];
+        for (int y = 0; y <= 3; y++)
+            for (int x = 0; x <= n; x++)
+                used += sprintf(text + used, "v %.17g %d 0\n", 1e-4 * x, y);
+        for (int y = 0; y < 3; y++)
+            for (int x = 0; x < n; x++) {
+                int a = (n + 1) * y + x + 1;
+                used += sprintf(text + used, "f %d %d %d %d\n", a, a + 1, a + n + 2, a + n + 1);
+            }
+        struct limit_tables tables;
+        build(text, (size_t)used, &tables);
+        expect_joints(&tables, 1e-8, 0, 0);
+        expect_joints(&tables, 1, 0, 0);
         limit_tables_finish(&tables);
     }
 }
@@ -582,6 +654,9 @@ int main(void)
         cmocka_unit_test(a_semisharp_crease_is_no_break),
         cmocka_unit_test(a_joint_has_its_curvature_jump),
         cmocka_unit_test(a_joint_has_its_gap),
+        cmocka_unit_test(a_stricter_limit_keeps_the_joints),
+        cmocka_unit_test(skins_of_a_part_are_no_joints),
+        cmocka_unit_test(a_thin_strip_has_no_joints),
         cmocka_unit_test(pages_of_a_book),
         cmocka_unit_test(kinks_by_the_formula),
         cmocka_unit_test(a_fold_makes_lines_jump),

@@ -127,8 +127,10 @@ static bool begin_borders(struct breaks *breaks, size_t *n_slices, struct error 
 
 static bool begin_edges(struct breaks *breaks, size_t *n_slices, struct error *error)
 {
-    if (!breaks_find_joints(breaks->borders, breaks->list.n_borders, 10 * breaks->setup.limits.gap,
-                            &breaks->joints, &breaks->n_joints))
+    const struct joint_distances distances =
+        breaks_joint_distances(breaks->setup.limits.gap, breaks_diagonal(breaks->setup.tables));
+    if (!breaks_find_joints(breaks->borders, breaks->list.n_borders, distances, &breaks->joints,
+                            &breaks->n_joints))
         return no_memory(error);
     const size_t n = n_edges_of(breaks);
     breaks->edges = calloc(n + 1, sizeof *breaks->edges);
@@ -169,7 +171,7 @@ static void measure_border(struct breaks *breaks, size_t i)
 {
     struct break_border *border = &breaks->borders[i];
     border->of = breaks->list.borders[i];
-    border->length = breaks_measure_border(breaks->setup.tables, &border->of, border->points);
+    breaks_measure_border(breaks->setup.tables, border);
 }
 
 static void measure_edge(struct breaks *breaks, size_t i)
@@ -216,6 +218,14 @@ static void destroy(struct computation *computation)
 }
 
 static const struct computation_kind KIND = {STAGES, begin, slice, destroy};
+
+double breaks_diagonal(const struct limit_tables *tables)
+{
+    double diagonal = 0;
+    for (int i = 0; i < 3; i++)
+        diagonal = hypot(diagonal, tables->box_max[i] - tables->box_min[i]);
+    return diagonal;
+}
 
 uint64_t breaks_bytes(const struct limit_tables *tables)
 {

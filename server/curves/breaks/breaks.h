@@ -40,6 +40,9 @@ struct breaks_found {
 /* The largest number of bytes that the computation takes for a surface, with the records of its result. */
 uint64_t breaks_bytes(const struct limit_tables *tables);
 
+/* The diagonal of the model's box, units. */
+double breaks_diagonal(const struct limit_tables *tables);
+
 /* Copies lights and limits; `tables` must outlive the computation. NULL with ERROR_SERVER when memory is short. */
 struct computation *breaks_create(const struct limit_tables *tables,
                                   const struct break_lines *lines,

@@ -47,10 +47,30 @@ static bool is_near(struct vec a, struct vec b, double distance)
     return vec_length(vec_sub(a, b)) < distance;
 }
 
-/* True if two borders lie together. Then *joint is set, with the border of the lower face first. */
-static bool join(const struct break_border *a, const struct break_border *b, double distance,
-                 struct surface_edge *joint)
+struct joint_distances breaks_joint_distances(double gap_limit, double diagonal)
 {
+    return (struct joint_distances){.same_side = fmax(10 * gap_limit, 1e-4 * diagonal),
+                                    .continued = fmax(10 * gap_limit, 1e-3 * diagonal)};
+}
+
+/* How near another border must be to lie on this one. */
+static double reach_of(const struct break_border *border, double distance)
+{
+    return fmin(distance, 0.25 * fmin(border->length, vec_length(border->across)));
+}
+
+/* True if the angle between the directions into both faces is below 60 degrees. */
+static bool is_same_side(const struct break_border *a, const struct break_border *b)
+{
+    return vec_dot(a->across, b->across) > 0.5 * vec_length(a->across) * vec_length(b->across);
+}
+
+/* True if two borders lie together. Then *joint is set, with the border of the lower face first. */
+static bool join(const struct break_border *a, const struct break_border *b,
+                 struct joint_distances distances, struct surface_edge *joint)
+{
+    double wanted = is_same_side(a, b) ? distances.same_side : distances.continued;
+    double distance = fmin(reach_of(a, wanted), reach_of(b, wanted));
     bool against = is_near(a->points[0], b->points[2], distance) &&
                    is_near(a->points[2], b->points[0], distance);
     bool along = is_near(a->points[0], b->points[0], distance) &&
@@ -75,8 +95,9 @@ static bool join(const struct break_border *a, const struct break_border *b, dou
  * in one plane must not take minutes. Usual models need a few. */
 enum { COMPARISONS = 256 };
 
-bool breaks_find_joints(const struct break_border *borders, size_t n_borders, double distance,
-                        struct surface_edge **joints, size_t *n_joints)
+bool breaks_find_joints(const struct break_border *borders, size_t n_borders,
+                        struct joint_distances distances, struct surface_edge **joints,
+                        size_t *n_joints)
 {
     struct placed *order = malloc((n_borders + 1) * sizeof *order);
     *joints = malloc((breaks_most_joints(n_borders) + 1) * sizeof **joints);
@@ -89,17 +110,18 @@ bool breaks_find_joints(const struct break_border *borders, size_t n_borders, do
     }
     size_t n = 0;
     for (size_t i = 0; i < n_borders; i++)
-        /* Only where both ends are farther apart than the distance, or any border would lie on itself. */
-        if (borders[i].length > 4 * distance && isfinite(borders[i].points[1].x))
+        if (borders[i].length > 0 && isfinite(borders[i].points[1].x))
             order[n++] = (struct placed){vec_dot(borders[i].points[1], DIRECTION), (uint32_t)i};
     qsort(order, n, sizeof *order, by_place);
     size_t left = n * COMPARISONS;
     for (size_t i = 0; i < n; i++)
-        for (size_t k = i + 1; k < n && order[k].place - order[i].place < distance && left > 0 &&
-                               *n_joints < breaks_most_joints(n_borders);
-             k++, left--)
-            *n_joints += join(&borders[order[i].index], &borders[order[k].index], distance,
-                              &(*joints)[*n_joints]);
+        for (size_t k = i + 1; k < n && left > 0 && *n_joints < breaks_most_joints(n_borders);
+             k++, left--) {
+            const struct break_border *a = &borders[order[i].index];
+            if (order[k].place - order[i].place >= reach_of(a, distances.continued))
+                break;
+            *n_joints += join(a, &borders[order[k].index], distances, &(*joints)[*n_joints]);
+        }
     qsort(*joints, *n_joints, sizeof **joints, by_faces);
     free(order);
     return true;

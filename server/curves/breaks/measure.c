@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "server/curves/breaks/joints.h"
 #include "server/surface/evaluate.h"
 
 /* Nearer to its ends than this part of an edge no curvature is measured: around an extraordinary vertex it need not
@@ -443,17 +444,28 @@ bool breaks_measure_edge(const struct break_setup *setup, const struct surface_e
     return true;
 }
 
-double breaks_measure_border(const struct limit_tables *tables, const struct surface_border *border,
-                             struct vec points[3])
+static struct vec place_of(const struct limit_tables *tables, const struct limit_place *place)
 {
+    struct limit_point point = {.s = {NAN, NAN, NAN}};
+    limit_evaluate_at(tables, place, &point);
+    return point.s;
+}
+
+void breaks_measure_border(const struct limit_tables *tables, struct break_border *border)
+{
+    struct limit_place place = {.node = border->of.face, .corner = border->of.edge};
     for (int i = 0; i < 3; i++) {
-        const struct limit_place place = {
-            .node = border->face, .corner = border->edge, .a = 0.5 * i};
-        struct limit_point point = {.s = {NAN, NAN, NAN}};
-        limit_evaluate_at(tables, &place, &point);
-        points[i] = point.s;
+        place.a = 0.5 * i;
+        border->points[i] = place_of(tables, &place);
     }
-    return length_of(tables, border->face, border->edge);
+    place.a = 0.5;
+    place.b = 1;
+    struct vec across = vec_sub(place_of(tables, &place), border->points[1]);
+    struct vec chord = vec_sub(border->points[2], border->points[0]);
+    double square = vec_dot(chord, chord);
+    border->across =
+        square > 0 ? vec_sub(across, vec_scale(chord, vec_dot(across, chord) / square)) : across;
+    border->length = length_of(tables, border->of.face, border->of.edge);
 }
 
 /* --- vertices */

@@ -29,9 +29,10 @@ bool breaks_measure_edge(const struct break_setup *setup, const struct surface_e
 /* How far over its limits an edge is: the largest quotient of a measure and its limit. */
 double breaks_severity(const struct break_setup *setup, const struct break_edge *edge);
 
-/* The length of a border edge, and its ends and middle. */
-double breaks_measure_border(const struct limit_tables *tables, const struct surface_border *border,
-                             struct vec points[3]);
+struct break_border;
+
+/* Measures border->of: sets the other members. */
+void breaks_measure_border(const struct limit_tables *tables, struct break_border *border);
 
 /* Measures the curvature around a vertex. False if there is none. */
 bool breaks_measure_sector(const struct limit_tables *tables, const struct surface_sector *sector,
