@@ -112,6 +112,13 @@ class BreaksCommand(unittest.TestCase):
         self.assertEqual(len(rows), 3)
         self.assertEqual({row[6] for row in rows}, {"30!"})
 
+    def test_table_has_the_length_of_all_kinds(self):
+        """Two sheets of 1 x 1 side by side: one joint, no crease."""
+        lines = [f"v {x + i} {y} 0" for i in (0, 1) for y in (0, 1) for x in (0, 1)]
+        path = self.write("joint.obj", "\n".join(lines) + "\nf 1 2 4 3\nf 5 6 8 7\nt interpolateboundary 1/0/0 1\n")
+        lines = self.breaks(path, code=0).stdout.splitlines()
+        self.assertTrue(lines[0].startswith("1 edge: 0 creases, 0 semi-sharp, 1 joint, on 1 units; 8 borders"), lines)
+
     def test_junit(self):
         """Valid XML with the right counts, also where the file's name has what XML must escape or cannot hold."""
         for name in ("fold.obj", 'a<b>&"c"\'\x01\x1b[31m\x7f.obj'):

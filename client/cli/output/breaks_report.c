@@ -269,12 +269,15 @@ static void print_vertices(const struct sheen_breaks *breaks)
 
 void breaks_table(const struct options *options, const struct sheen_breaks *breaks)
 {
+    double length = 0;
+    for (uint32_t i = 0; i < breaks->n_edges; i++)
+        length += breaks->edges[i].length;
     printf("%u %s: %u %s, %u semi-sharp, %u %s, on %.4g units; %u %s on %.4g units\n",
            breaks->n_edges, value_noun(breaks->n_edges, "edge", "edges"), breaks->n_creases,
            value_noun(breaks->n_creases, "crease", "creases"), breaks->n_semisharp,
-           breaks->n_joints, value_noun(breaks->n_joints, "joint", "joints"),
-           breaks->creases_length, breaks->n_borders,
-           value_noun(breaks->n_borders, "border", "borders"), breaks->borders_length);
+           breaks->n_joints, value_noun(breaks->n_joints, "joint", "joints"), length,
+           breaks->n_borders, value_noun(breaks->n_borders, "border", "borders"),
+           breaks->borders_length);
     print_limits(options, breaks);
     printf("%u out of tolerance, on %.4g units\n", breaks->n_out, breaks->out_length);
     const uint32_t n_rows = breaks->n_edges - breaks->n_semisharp;
