@@ -232,7 +232,8 @@ static const struct option_row ROWS[] = {
      "instead of one pixel, places along a line of the picture, both ends included;\n"
      "prints a line of CSV for each, with empty fields where there is no number",
      apply_section, NULL},
-    {"samples", 0, "N", "number of places of --section, {} (default: 100)", apply_samples, NULL},
+    {"samples", 0, "N", "number of places of --section, {client} (default: 100)", apply_samples,
+     NULL},
     {0},
 };
 

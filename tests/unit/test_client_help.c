@@ -86,6 +86,20 @@ static void help_has_the_ranges(void **state)
     }
 }
 
+/* `pick` and `compare` have options of one name with different ranges. */
+static void help_has_the_commands_own_range(void **state)
+{
+    (void)state;
+    struct options options;
+    char why[OPTIONS_WHY_BYTES];
+    assert_non_null(strstr(help_of(&COMMAND_PICK), "places of --section, from 2 to 4096 "));
+    assert_int_equal(parse(&COMMAND_PICK, "m.obj --section 0,0,9,9 --samples 4096", &options, why),
+                     OPTIONS_RUN);
+    assert_int_equal(parse(&COMMAND_PICK, "m.obj --section 0,0,9,9 --samples 4097", &options, why),
+                     OPTIONS_WRONG);
+    assert_non_null(strstr(help_of(&COMMAND_COMPARE), "both surfaces together, from 1000 to 1e8"));
+}
+
 /* The size in --help is the one that a command uses without --size. */
 static void help_says_its_own_default_size(void **state)
 {
@@ -165,6 +179,7 @@ int main(void)
         cmocka_unit_test(help_shows_every_option),
         cmocka_unit_test(help_has_the_commands_exit_codes),
         cmocka_unit_test(help_has_the_ranges),
+        cmocka_unit_test(help_has_the_commands_own_range),
         cmocka_unit_test(help_says_its_own_default_size),
         cmocka_unit_test(help_says_the_least_memory),
         cmocka_unit_test(completed_words_are_values),

@@ -11,10 +11,10 @@ static bool names_option(const struct range *range, const char *name)
     return at && strncmp(at - 2, "--", 2) == 0 && strchr(", ", at[strlen(name)]);
 }
 
-/* The n-th range of an option; NULL if it has fewer. */
-static const struct range *range_of_option(const char *name, size_t n)
+/* The n-th range of an option, of those from `first` on; NULL if it has fewer. */
+static const struct range *range_of_option(const char *name, size_t first, size_t n)
 {
-    for (size_t i = 0; i < N_RANGES + N_OPTION_RANGES; i++) {
+    for (size_t i = first; i < N_RANGES + N_OPTION_RANGES; i++) {
         const struct range *range = i < N_RANGES ? &RANGES[i] : &OPTION_RANGES[i - N_RANGES];
         if (names_option(range, name) && n-- == 0)
             return range;
@@ -22,17 +22,33 @@ static const struct range *range_of_option(const char *name, size_t n)
     return NULL;
 }
 
+/* The length of the placeholder that a text begins with, and the first range that it may stand for; 0: there is none. */
+static size_t placeholder(const char *text, size_t *first)
+{
+    static const struct {
+        const char *text;
+        size_t first;
+    } placeholders[] = {{"{}", 0}, {"{client}", N_RANGES}};
+    for (size_t i = 0; i < sizeof(placeholders) / sizeof(*placeholders); i++) {
+        size_t length = strlen(placeholders[i].text);
+        *first = placeholders[i].first;
+        if (strncmp(text, placeholders[i].text, length) == 0)
+            return length;
+    }
+    return 0;
+}
+
 void options_row_help(const struct option_row *row, char help[static OPTIONS_HELP_BYTES])
 {
     char text[RANGE_TEXT_BYTES];
-    size_t used = 0, n = 0;
+    size_t used = 0, n = 0, first;
     for (const char *from = row->help; *from && used + 1 < OPTIONS_HELP_BYTES;) {
-        const struct range *range =
-            strncmp(from, "{}", 2) == 0 ? range_of_option(row->name, n) : NULL;
+        size_t length = placeholder(from, &first);
+        const struct range *range = length ? range_of_option(row->name, first, n) : NULL;
         if (range) {
             used += (size_t)snprintf(help + used, OPTIONS_HELP_BYTES - used, "%s",
                                      range_text(range, text));
-            from += 2;
+            from += length;
             n++;
         } else {
             help[used++] = *from++;

@@ -85,7 +85,8 @@ struct option_row {
     char letter;          /* short form, 0: none */
     const char *argument; /* name of the value in --help; NULL: a flag */
     /* Meaning, range, unit and default. '\n' begins a new line; {} stands for the next range of
-     * RANGES or OPTION_RANGES that belongs to this option. */
+     * RANGES or OPTION_RANGES that belongs to this option, {client} for the next one of
+     * OPTION_RANGES, where an option of a request has the same name. */
     const char *help;
     bool (*apply)(struct options *options, const char *value, char *why);
     const char *words; /* values for completion, separated by blanks; NULL: none, or files */
