@@ -67,6 +67,24 @@ class LinesCommand(unittest.TestCase):
         schema.check(summary, self.schema)
         self.assertNotIn("curves", summary)
 
+    def test_summary(self):
+        path = os.path.join(self.folder, "summary.svg")
+        answer = self.json("--at", "0.25,0.35625")
+        n_lines = len({curve["line"] for curve in answer["curves"]})
+        asked = ("lines", BODY, "-o", path, "--at", "0.25,0.35625")
+        self.assertRegex(self.sheen(*asked).stderr, rf"{path}: {len(answer['curves'])} curves? of {n_lines} lines?, "
+                         r"0 undecided places, \d+ ms\n$")
+        self.assertEqual(self.sheen(*asked, "-q").stderr, "")
+        with open(path, encoding="utf-8") as file:
+            self.assertIn('data-place="0.35625"', file.read())
+        with open(self.lines("summary.csv", "--at", "0.35625"), encoding="utf-8") as file:
+            self.assertEqual({row["place"] for row in csv.DictReader(file)}, {"0.35625"})
+        sheet = os.path.join(self.folder, "sheet.obj")
+        with open(sheet, "w", encoding="utf-8") as file:
+            file.write("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n")
+        said = self.sheen("lines", sheet, "-o", path, "--silhouettes").stderr
+        self.assertRegex(said, rf"sheet.obj: no silhouettes\n{path}: 0 silhouettes, 0 undecided places, \d+ ms\n$")
+
     def test_the_middles_of_bright_stripes(self):
         answer = self.json("--pattern", "stripes:count=4,duty=0.5", "--tolerance", "0.01")
         self.assertEqual(sorted({curve["place"] for curve in answer["curves"]}), [0.0625, 0.3125, 0.5625, 0.8125])
@@ -114,7 +132,7 @@ class LinesCommand(unittest.TestCase):
         self.assertEqual((root.tag, root.get("width"), root.get("height")), (SVG + "svg", "1280", "720"))
         light, = root[0]
         self.assertEqual(light.get("id"), "light-1")
-        self.assertEqual([line.get("data-place") for line in light], ["0.29999999999999999", "0.59999999999999998"])
+        self.assertEqual([line.get("data-place") for line in light], ["0.3", "0.6"])
         self.assertTrue(any(group.get("class") == "hidden" for line in light for group in line))
         for path in root.iter(SVG + "path"):
             self.assertTrue(re.fullmatch(r"M[-0-9. ]+(C[-0-9. ]+)+", path.get("d")))

@@ -247,7 +247,31 @@ static void print_notices(const struct options *options, const struct sheen_curv
                 "sheen: %s: %u %s where the course of a line is not decided; --json lists them\n",
                 options->model, curves->n_marks, value_noun(curves->n_marks, "place", "places"));
     if (curves->n_curves == 0)
-        fprintf(stderr, "sheen: %s: no lines are met\n", options->model);
+        fprintf(stderr, "sheen: %s: %s\n", options->model,
+                options->curve_options.silhouettes ? "no silhouettes" : "no lines are met");
+}
+
+/* The number of lines that have a curve; the curves of a line stand together. */
+static uint32_t lines_of(const struct sheen_curves *curves)
+{
+    uint32_t n = 0;
+    for (uint32_t i = 0; i < curves->n_curves; i++)
+        n += i == 0 || curves->curves[i].line != curves->curves[i - 1].line;
+    return n;
+}
+
+static void print_summary(const struct options *options, const struct sheen_curves *curves)
+{
+    if (options->quiet)
+        return;
+    fprintf(stderr, "%s: %u ", options->output, curves->n_curves);
+    if (options->curve_options.silhouettes)
+        fputs(value_noun(curves->n_curves, "silhouette", "silhouettes"), stderr);
+    else
+        fprintf(stderr, "%s of %u %s", value_noun(curves->n_curves, "curve", "curves"),
+                lines_of(curves), value_noun(lines_of(curves), "line", "lines"));
+    fprintf(stderr, ", %u undecided %s, %.0f ms\n", curves->n_marks,
+            value_noun(curves->n_marks, "place", "places"), (double)curves->total_us / 1e3);
 }
 
 static enum sheen_status print(struct client *client, const struct options *options,
@@ -262,6 +286,8 @@ static enum sheen_status print(struct client *client, const struct options *opti
     }
     if (!status)
         print_notices(options, &traced->curves);
+    if (!status)
+        print_summary(options, &traced->curves);
     return status;
 }
 
@@ -364,7 +390,9 @@ static const struct option_row ROWS[] = {
      "{} of the model (default: 1e-5 of the diagonal of\n"
      "the model's box)",
      apply_tolerance, NULL},
-    {"silhouettes", 0, NULL, "trace the silhouettes for the line eye, instead of lines",
+    {"silhouettes", 0, NULL,
+     "trace the silhouettes for the line eye, instead of lines; the border of an open\n"
+     "surface is none",
      apply_silhouettes, NULL},
     {"visible-only", 0, NULL, "leave out what the camera does not see", apply_visible_only, NULL},
     {"deadline", 0, "MS", "give up after this time, {}\n(default: none)", apply_deadline, NULL},

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "client/cli/lines/cubics.h"
+#include "client/cli/output/json.h"
 
 /* Cubic paths are within this distance of the points, px. */
 static const double PATH_TOLERANCE_PX = 0.02;
@@ -118,8 +119,11 @@ bool curve_write_svg(FILE *out, const struct curve_drawing *drawing)
                     COLOURS[light % (sizeof(COLOURS) / sizeof(*COLOURS))]);
         }
         fprintf(out, "<g id=\"line-%" PRIu32 "\"", curve->line + 1);
-        if (!isnan(curve->place))
-            fprintf(out, " data-place=\"%.17g\"", curve->place);
+        if (!isnan(curve->place)) {
+            fputs(" data-place=\"", out);
+            json_write_double(out, curve->place);
+            fputc('"', out);
+        }
         fputs(">\n", out);
         ok = write_line(out, drawing, first, last, true) &&
              (drawing->visible_only || write_line(out, drawing, first, last, false));
@@ -135,8 +139,12 @@ bool curve_write_svg(FILE *out, const struct curve_drawing *drawing)
 
 static void write_vertex(FILE *out, const char *layer, const double point[3])
 {
-    fprintf(out, "0\nVERTEX\n8\n%s\n10\n%.17g\n20\n%.17g\n30\n%.17g\n70\n32\n", layer, point[0],
-            point[1], point[2]);
+    fprintf(out, "0\nVERTEX\n8\n%s", layer);
+    for (int i = 0; i < 3; i++) {
+        fprintf(out, "\n%d\n", 10 * (i + 1));
+        json_write_double(out, point[i]);
+    }
+    fputs("\n70\n32\n", out);
 }
 
 static void begin_polyline(FILE *out, const char *layer, bool is_closed)
@@ -190,10 +198,9 @@ void curve_write_dxf(FILE *out, const struct curve_drawing *drawing)
 
 static void write_field(FILE *out, double value)
 {
-    if (isnan(value))
-        fputc(',', out);
-    else
-        fprintf(out, ",%.17g", value);
+    fputc(',', out);
+    if (!isnan(value))
+        json_write_double(out, value);
 }
 
 void curve_write_csv(FILE *out, const struct curve_drawing *drawing)

@@ -92,7 +92,7 @@ void json_uint(struct json *json, const char *key, uint64_t value)
 }
 
 /* Writes the fewest digits that give the same number back. */
-static void write_double(FILE *out, double value)
+void json_write_double(FILE *out, double value)
 {
     char text[32];
     for (int digits = 15; digits <= 17; digits++) {
@@ -107,7 +107,7 @@ void json_double(struct json *json, const char *key, double value)
 {
     begin_value(json, key);
     if (isfinite(value))
-        write_double(json->out, value);
+        json_write_double(json->out, value);
     else
         fputs("null", json->out);
 }

@@ -25,6 +25,8 @@ void json_string(struct json *json, const char *key, const char *value);
 void json_uint(struct json *json, const char *key, uint64_t value);
 /* In the fewest digits that give the same number back. */
 void json_double(struct json *json, const char *key, double value);
+/* Writes the number alone, finite, with the fewest digits that read back equal: for files of other formats. */
+void json_write_double(FILE *out, double value);
 void json_bool(struct json *json, const char *key, bool value);
 void json_vec3(struct json *json, const char *key, const double value[static 3]);
 void json_hex(struct json *json, const char *key, const uint8_t *bytes, size_t n_bytes);
