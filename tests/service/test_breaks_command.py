@@ -94,6 +94,15 @@ class BreaksCommand(unittest.TestCase):
         # Zebra's bands are 18 degrees wide here: the ray turns by twice the angle, at most.
         self.assertTrue(all(edge["jump_spacings"]["value"] <= 2 * ANGLE / 18 + 1e-6 for edge in zebra["edges"]))
 
+    def test_an_angle_equal_to_its_limit_is_within(self):
+        self.breaks(self.folded, "--angle", str(ANGLE), code=0)
+        self.breaks(self.folded, "--angle", str(ANGLE - 3e-5), code=1)
+
+    def test_flat_corners_are_not_listed(self):
+        flat = self.write("flat.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0.5\nv 0 1 0.5\nf 1 2 3 4\n")
+        self.assertNotIn("extraordinary", self.breaks(flat, code=0).stdout)
+        self.assertIn("8 extraordinary vertices", self.breaks(self.smooth, code=0).stdout)
+
     def test_semisharp_creases_are_no_breaks(self):
         path = self.write("soft.obj", fold(2))
         answer = self.json(path, code=0)

@@ -11,6 +11,8 @@
 
 #define SCHEMA "sheen-breaks-1" /* client/schema/breaks-1.json */
 enum { MOST_ROWS = 40 };
+/* Vertices around which the surface turns by less than this many radians are flat, but for rounding. */
+static const double FLAT_TURN = 1e-6;
 
 /* --- names and units */
 
@@ -248,16 +250,17 @@ static void print_edge(const struct sheen_break_edge *edge)
 static void print_vertices(const struct sheen_breaks *breaks)
 {
     const struct sheen_break_vertex *sharpest = NULL;
-    double most = 0;
+    double most = 0, turn = 0; /* radians, within the radius */
     for (uint32_t i = 0; i < breaks->n_vertices; i++) {
         const struct sheen_break_vertex *vertex = &breaks->vertices[i];
         double spread = vertex->k_greatest - vertex->k_least;
+        turn = fmax(turn, fmax(fabs(vertex->k_greatest), fabs(vertex->k_least)) * vertex->radius);
         if (!sharpest || spread > most) {
             sharpest = vertex;
             most = spread;
         }
     }
-    if (!sharpest)
+    if (!sharpest || turn < FLAT_TURN)
         return;
     printf("%u extraordinary %s; the widest range of curvature is %.4g to %.4g 1/unit, %.3g units "
            "away from the one at %.5g,%.5g,%.5g (%u %s)\n",

@@ -15,6 +15,10 @@ static const double FLAT = 1e-3;
 /* The ring on which the curvature around a vertex is measured, in parts of a face. */
 static const double RING = 1.0 / 64;
 
+/* Normals of equal sides differ by this many degrees, because points are stored in single precision: so much more than
+ * the limit is not out of tolerance. */
+static const double ANGLE_FLOOR = 1e-5;
+
 enum { N_GAUSS = 8, N_END = 3, N_PLACES = N_GAUSS + 2 * N_END, GOLDEN_STEPS = 18, RING_PLACES = 9 };
 /* Places and weights of Gauss and Legendre on [-1, 1]; the other half by symmetry. */
 static const double GAUSS_AT[N_GAUSS / 2] = {0.1834346424956498, 0.5255324099163290,
@@ -315,7 +319,7 @@ static double severity_of(const struct break_limits *limits, double gap, double 
 {
     double severity = 0; /* NaN counts as nothing */
     severity = fmax(severity, gap / limits->gap);
-    severity = fmax(severity, angle_deg / limits->angle_deg);
+    severity = fmax(severity, angle_deg / (limits->angle_deg + ANGLE_FLOOR));
     return fmax(severity, percent / limits->curvature_percent);
 }
 
@@ -438,7 +442,8 @@ bool breaks_measure_edge(const struct break_setup *setup, const struct surface_e
     out->out_length = out_length(setup, &sampled);
     out->out_length = fmin(out->out_length, out->length);
     out->over = (uint8_t)((out->worst[BREAK_GAP].value > setup->limits.gap) << BREAK_GAP |
-                          (out->worst[BREAK_ANGLE].value > setup->limits.angle_deg) << BREAK_ANGLE |
+                          (out->worst[BREAK_ANGLE].value > setup->limits.angle_deg + ANGLE_FLOOR)
+                              << BREAK_ANGLE |
                           (out->worst[BREAK_PERCENT].value > setup->limits.curvature_percent)
                               << BREAK_PERCENT);
     return true;
