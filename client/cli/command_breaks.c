@@ -26,7 +26,7 @@ static enum sheen_status write_junit(struct client *client, const struct options
 }
 
 static enum sheen_status write_picture(struct client *client, const struct options *options,
-                                       const struct sheen_breaks *breaks)
+                                       const struct sheen_breaks *breaks, uint32_t *n_hidden)
 {
     struct sheen_request request = options->request;
     struct sheen_frame frame = SHEEN_FRAME_DEFAULTS;
@@ -34,7 +34,7 @@ static enum sheen_status write_picture(struct client *client, const struct optio
     request.format = SHEEN_FORMAT_ZSTD;
     request.planes = BREAKS_PICTURE_PLANES;
     enum sheen_status status = client_render(client, options, &request, &frame);
-    if (!status && !breaks_picture(&canvas, &frame, breaks))
+    if (!status && !breaks_picture(&canvas, &frame, breaks, n_hidden))
         status = failure_set(&client->error, SHEEN_NO_MEMORY, "no memory for the picture");
     if (!status)
         status = canvas_write_png(&canvas, options->output, &client->error);
@@ -65,10 +65,11 @@ static enum sheen_status print(struct client *client, const struct options *opti
                                const struct sheen_breaks *breaks)
 {
     enum sheen_status status = SHEEN_OK;
+    uint32_t n_hidden = 0;
     if (options->junit)
         status = write_junit(client, options, breaks);
     if (!status && options->output)
-        status = write_picture(client, options, breaks);
+        status = write_picture(client, options, breaks, &n_hidden);
     progress_clear(&client->progress);
     if (!status && options->json) {
         struct json json = {.out = stdout};
@@ -77,6 +78,9 @@ static enum sheen_status print(struct client *client, const struct options *opti
     } else if (!status) {
         breaks_table(options, breaks);
     }
+    if (!status && n_hidden > 0 && !options->quiet)
+        fprintf(stderr, "sheen: %s: %u of %u edges out of tolerance cannot be seen in this view\n",
+                options->output, n_hidden, breaks->n_out);
     return status;
 }
 

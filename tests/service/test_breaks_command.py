@@ -156,7 +156,7 @@ class BreaksCommand(unittest.TestCase):
         path = os.path.join(self.folder, "a.png")
         # From above, 4 units high on 200 pixels: the fold runs down the middle, from y = 0 to y = 3.
         view = ("--size", "200x200", "--ortho", "4", "--eye", "0,1.5,9", "--target", "0,1.5,0", "--up", "0,1,0")
-        self.breaks(self.folded, "-o", path, *view, code=1)
+        self.assertNotIn("cannot be seen", self.breaks(self.folded, "-o", path, *view, code=1).stderr)
         width, _, rows = read_png(path)
         red = {(x, y) for y, row in enumerate(rows) for x in range(width) if row[3 * x:3 * x + 3] == bytes((255, 0, 0))}
         self.assertLessEqual({x for x, _ in red}, set(range(97, 103)))
@@ -164,6 +164,11 @@ class BreaksCommand(unittest.TestCase):
             self.assertIn((99, y), red)
             self.assertIn((100, y), red)
         self.assertFalse(any(y < 24 or y > 175 for _, y in red))
+        # Half a unit high at y = 0.5: two of the three edges lie outside.
+        near = (*view[:2], "--ortho", "0.5", "--eye", "0,0.5,9", "--target", "0,0.5,0", "--up", "0,1,0")
+        said = self.breaks(self.folded, "-o", path, *near, code=1).stderr
+        self.assertIn(f"{path}: 2 of 3 edges out of tolerance cannot be seen in this view", said)
+        self.assertNotIn("cannot be seen", self.breaks(self.folded, "-o", path, "-q", *near, code=1).stderr)
         self.breaks(self.folded, "-o", path, "--angle", "31", *view, code=0)
         width, _, rows = read_png(path)
         self.assertTrue(all(row[3 * x] == row[3 * x + 1] for row in rows for x in range(width)))

@@ -10,6 +10,7 @@ static const double HALF_WIDTH_PX = 2;
 /* A side of an edge that is out of tolerance. */
 struct side {
     uint32_t face, edge;
+    uint32_t index; /* of the edge in the list of breaks */
     int colour;
 };
 
@@ -38,7 +39,7 @@ static struct side *list_sides(const struct sheen_breaks *breaks)
     for (uint32_t i = 0; sides && i < breaks->n_out; i++)
         for (int k = 0; k < 2; k++)
             sides[2 * (size_t)i + (size_t)k] =
-                (struct side){breaks->edges[i].faces[k], breaks->edges[i].edges[k],
+                (struct side){breaks->edges[i].faces[k], breaks->edges[i].edges[k], i,
                               colour_of(breaks->edges[i].over)};
     if (sides)
         qsort(sides, 2 * (size_t)breaks->n_out, sizeof(*sides), by_face);
@@ -81,7 +82,8 @@ static double slope(const struct ptex *plane, uint32_t width, uint32_t height, u
     return 0;
 }
 
-static void paint_pixel(struct canvas *canvas, const struct ptex *plane, uint32_t x, uint32_t y,
+/* True if the side reaches this pixel. */
+static bool paint_pixel(struct canvas *canvas, const struct ptex *plane, uint32_t x, uint32_t y,
                         const struct side *side)
 {
     const uint32_t width = canvas->width_px, height = canvas->height_px;
@@ -92,15 +94,17 @@ static void paint_pixel(struct canvas *canvas, const struct ptex *plane, uint32_
     double share = fmin(HALF_WIDTH_PX + 0.5 - distance_px, 1);
     if (share > 0)
         canvas_paint(canvas, x, y, COLOURS[side->colour], share);
+    return share > 0;
 }
 
 bool breaks_picture(struct canvas *canvas, const struct sheen_frame *frame,
-                    const struct sheen_breaks *breaks)
+                    const struct sheen_breaks *breaks, uint32_t *n_hidden)
 {
     const struct ptex *plane = frame->plane[PTEX_PLANE];
     struct side *sides = list_sides(breaks);
     const size_t n = 2 * (size_t)breaks->n_out;
-    bool ok = canvas_init(canvas, frame->width_px, frame->height_px) && sides;
+    bool *seen = calloc((size_t)breaks->n_out + 1, sizeof(*seen));
+    bool ok = canvas_init(canvas, frame->width_px, frame->height_px) && sides && seen;
     if (ok)
         canvas_picture(canvas, 0, 0, (const uint8_t(*)[4])frame->plane[COLOUR_PLANE],
                        frame->width_px, frame->height_px);
@@ -108,8 +112,13 @@ bool breaks_picture(struct canvas *canvas, const struct sheen_frame *frame,
         for (uint32_t x = 0; x < frame->width_px; x++) {
             const uint32_t face = plane[(size_t)y * frame->width_px + x].face;
             for (size_t i = first_side(sides, n, face); i < n && sides[i].face == face; i++)
-                paint_pixel(canvas, plane, x, y, &sides[i]);
+                if (paint_pixel(canvas, plane, x, y, &sides[i]))
+                    seen[sides[i].index] = true;
         }
+    *n_hidden = 0;
+    for (uint32_t i = 0; ok && i < breaks->n_out; i++)
+        *n_hidden += !seen[i];
+    free(seen);
     free(sides);
     return ok;
 }
