@@ -528,6 +528,8 @@ class Computations(DaemonCase):
             found = session.breaks(session.upload(folded(30), "fold.obj"))
             self.assertEqual((found.edges_out, found.creases, found.joints, len(found.edges)), (3, 3, 0, 3))
             self.assertTrue(found)
+            self.assertFalse(found.within)
+            self.assertIn("3 edges (3 creases, 0 semi-sharp, 0 joints), 3 out of tolerance on 3 units", str(found))
             self.assertEqual(found.angle_deg, 0.1)
             self.assertAlmostEqual(found.creases_length, 3, delta=1e-9)
             self.assertEqual(found.edges["kind"].tolist(), [0, 0, 0])
@@ -536,7 +538,7 @@ class Computations(DaemonCase):
             self.assertTrue(np.allclose(found.edges["angle"]["position"][:, (0, 2)], 0, atol=1e-9))
             self.assertTrue(np.allclose(found.edges["gap"]["value"], 0, atol=1e-6))
             loose = session.breaks(session.upload(folded(30), "fold.obj"), gap=1, angle_deg=40, curvature_percent=200)
-            self.assertEqual((bool(loose), loose.edges_out, loose.angle_deg), (False, 0, 40))
+            self.assertEqual((bool(loose), loose.within, loose.edges_out, loose.angle_deg), (False, True, 0, 40))
             for options in ({"angle_deg": 0}, {"gap": -1}, {"curvature_percent": float("nan")}, {"fov": 200}):
                 with self.assertRaises((sheen.BadRequest, sheen.BadArgument)):
                     session.breaks(session.upload(folded(30), "fold.obj"), **options)
@@ -600,7 +602,7 @@ class Comparisons(DaemonCase):
             with self.assertRaisesRegex(sheen.BadArgument, "no measure normal"):
                 session.compare(old, new, limits={"normal": 1})
             for limits in ({"distance": -1}, {"normal_deg": 181}, {"lines": float("nan")}):
-                with self.assertRaises(sheen.BadRequest):
+                with self.assertRaises((sheen.BadRequest, sheen.BadArgument)):
                     session.compare(old, new, limits=limits)
             session.render(old, size=(8, 8))  # the session goes on
 
@@ -648,12 +650,35 @@ class Curves(DaemonCase):
             self.assertEqual({curve.place for curve in other.curves}, {found.curves[0].place})
             self.assertEqual(other.tolerance, 1)
             self.assertLess(sum(len(curve.points) for curve in other.curves), sum(len(curve.points) for curve in found.curves))
+            one = session.lines(model, at=found.curves[0].place, tolerance=1)  # one number
+            self.assertEqual([curve.length for curve in one.curves], [curve.length for curve in other.curves])
             outline = session.lines(session.upload(CUBE, "cube.obj"), silhouettes=True)
             self.assertEqual([(curve.kind, math.isnan(curve.place)) for curve in outline.curves], [("silhouette", True)])
             for options in ({"tolerance": -1.0}, {"at": [0.5] * 257}, {"pattern": "rainbow"}):
                 with self.assertRaises((sheen.BadRequest, sheen.BadArgument)):
                     session.lines(model, **options)
             session.render(model, size=(8, 8))  # the session goes on
+
+    def test_wrong_types(self):
+        """A value of the wrong type is refused by the name of its option, before anything is asked."""
+        with sheen.connect(self.daemon.unix) as session:
+            model = session.upload(CUBE, "cube.obj")
+            camera = session.render(model, size=(8, 8)).camera
+            for name, call in (("at", lambda: session.lines(model, at=["a"])),
+                               ("at", lambda: session.lines(model, at=object())),
+                               ("tolerance", lambda: session.lines(model, tolerance="fine")),
+                               ("gap", lambda: session.breaks(model, gap=[1])),
+                               ("samples", lambda: session.compare(model, model, samples="many")),
+                               ("distance", lambda: session.compare(model, model, limits={"distance": "far"})),
+                               ("x", lambda: session.pick(model, camera, "left", 0)),
+                               ("start", lambda: session.section(model, camera, 3, (1, 1))),
+                               ("samples", lambda: session.section(model, camera, (0, 0), (1, 1), "many")),
+                               ("size", lambda: session.render(model, size=7)),
+                               ("up", lambda: session.render(model, up=1))):
+                with self.assertRaisesRegex(sheen.BadArgument, f"^{name} "):
+                    call()
+            table = str(session.section(model, camera, (0, 0), (7, 7), 3, size=(8, 8))).splitlines()
+            self.assertEqual((len(table), table[0].split()[0], len(table[2].split())), (4, "x", 9))
 
 
 class Loss(unittest.TestCase):

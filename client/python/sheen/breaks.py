@@ -49,6 +49,16 @@ class Breaks:
         """True if an edge is out of tolerance."""
         return self.edges_out > 0
 
+    @property
+    def within(self) -> bool:
+        """True if no edge is out of tolerance."""
+        return self.edges_out == 0
+
+    def __str__(self) -> str:
+        return (f"{len(self.edges)} edges ({self.creases} creases, {self.semisharp} semi-sharp, {self.joints} joints), "
+                f"{self.edges_out} out of tolerance on {self.out_length:.4g} units; {self.borders} borders, "
+                f"{len(self.vertices)} extraordinary vertices")
+
     @staticmethod
     def data_bytes(body: messages.Breaks) -> int:
         """The size of the records; Malformed: the message says another."""

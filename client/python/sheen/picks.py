@@ -77,6 +77,15 @@ class Section:
     def hit(self) -> Array:
         return np.asarray(self.ptex["face"] != 0xffffffff)
 
+    def __str__(self) -> str:
+        """All places as a table, with dashes where there is no number."""
+        def text(*values: float) -> str:
+            return "".join(f"{'-' if math.isnan(value) else f'{value:.6g}':>13}" for value in values)
+
+        names = ("x", "y", "point.x", "point.y", "point.z", "k.min", "k.max", "light.s", "light.t")
+        rows = [text(self.x[i], self.y[i], *self.position[i], *self.curvature[i], *self.light[i]) for i in range(len(self.x))]
+        return "\n".join(["".join(f"{name:>13}" for name in names), *rows])
+
     @staticmethod
     def of(places: Sequence[tuple[float, float]], frames: Sequence[Frame]) -> Section:
         def all_of(name: str) -> Array:

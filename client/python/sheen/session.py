@@ -22,7 +22,7 @@ from sheen.options import Options, check_names, lights_and_lines, render_message
 from sheen.picks import Pick, Section
 from sheen.protobuf import M, Malformed, Message, decode, encode
 from sheen.scene import Camera, Pattern
-from sheen.values import number, size
+from sheen.values import number, number_or_none, numbers, place, size, whole
 
 Progress = Callable[[str, int, int], None]
 PathOrBytes = Union[str, "os.PathLike[str]", bytes]
@@ -450,12 +450,14 @@ class Session:
         """The numbers at the pixel x, y of the picture of this camera and these options: the same as in its planes.
         Fractions lie between the centres of pixels."""
         check_names(options)
+        x, y = number(x, "x"), number(y, "y")
         return Pick.of(x, y, self._windows(model, [(x, y)], camera, options)[0])
 
     def section(self, model: Model | PathOrBytes, camera: Camera | None, start: tuple[float, float],
                 end: tuple[float, float], samples: int = 100, /, **options: Unpack[Options]) -> Section:
         """The numbers at places along a line of the picture, both ends included."""
         check_names(options)
+        samples, start, end = whole(samples, "samples"), place(start, "start"), place(end, "end")
         if samples < 2:
             raise BadArgument(f"samples is {samples}; it must be at least 2")
         places = [(start[0] + (end[0] - start[0]) * i / (samples - 1), start[1] + (end[1] - start[1]) * i / (samples - 1))
@@ -490,8 +492,9 @@ class Session:
         """Finds where lines on the surface break: along creases and joints, and at extraordinary vertices. The limits
         `gap`, `angle_deg` and `curvature_percent` decide which edges are out of tolerance. The other options tell camera,
         lights and lines, and `deadline`."""
-        asked = messages.FindBreaks(scene=self._scene(model, options), gap=gap, angle_deg=angle_deg,
-                                    curvature_percent=curvature_percent)
+        asked = messages.FindBreaks(scene=self._scene(model, options), gap=number_or_none(gap, "gap"),
+                                    angle_deg=number_or_none(angle_deg, "angle_deg"),
+                                    curvature_percent=number_or_none(curvature_percent, "curvature_percent"))
         body, data = self._compute(Type.FIND_BREAKS, asked, Type.BREAKS, messages.Breaks, Breaks.data_bytes, progress)
         try:
             return Breaks.of(body, data)
@@ -509,7 +512,8 @@ class Session:
             raise BadArgument(f"there is no measure {', '.join(unknown)}; there are {', '.join(Limits.__annotations__)}")
         allowed = {name: read_limit(name, given.get(name)) for name in Limits.__annotations__}
         scene = self._scene(old, options)
-        asked = messages.Compare(scene=scene, new_sha256=self._id_of(new), align=True if align else None, samples=samples,
+        asked = messages.Compare(scene=scene, new_sha256=self._id_of(new), align=True if align else None,
+                                 samples=None if samples is None else whole(samples, "samples"),
                                  distance=allowed["distance"].value, normal_deg=allowed["normal_deg"].value,
                                  lines=allowed["lines"].value, line_length=allowed["line_length"].value,
                                  curvature=allowed["curvature"].value)
@@ -519,12 +523,13 @@ class Session:
         except Malformed as wrong:
             raise self._bad_peer(f"COMPARED: {wrong}") from None
 
-    def lines(self, model: Model | PathOrBytes, *, tolerance: float | None = None, at: Sequence[float] = (),
+    def lines(self, model: Model | PathOrBytes, *, tolerance: float | None = None,
+              at: float | Sequence[float] = (),
               silhouettes: bool = False, progress: Progress | None = None, **options: Unpack[Options]) -> Curves:
-        """Traces lines on the surface as curves. `at`: places on each light; default: those of its pattern. `tolerance`:
+        """Traces lines on the surface as curves. `at`: places on each light, or one; default: those of its pattern. `tolerance`:
         the greatest distance of a curve from its chords. `silhouettes`: those of the eye, instead of lines."""
-        asked = messages.TraceLines(scene=self._scene(model, options), tolerance=tolerance,
-                                    at=[number(place, "at") for place in at], silhouettes=True if silhouettes else None)
+        asked = messages.TraceLines(scene=self._scene(model, options), tolerance=number_or_none(tolerance, "tolerance"),
+                                    at=numbers(at, "at"), silhouettes=True if silhouettes else None)
         body, data = self._compute(Type.TRACE_LINES, asked, Type.CURVES, messages.Curves, Curves.data_bytes, progress)
         try:
             return Curves.of(body, data)

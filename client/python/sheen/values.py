@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import math
-from typing import Sequence, Union
+from typing import Any, Sequence, Union
 
 from sheen.errors import BadArgument
 from sheen.messages import Colour as ColourMessage
@@ -34,11 +34,31 @@ def whole(value: str | int, name: str) -> int:
     return found
 
 
-def vector(value: Vector, name: str) -> Vec3:
+def number_or_none(value: str | float | None, name: str) -> float | None:
+    return None if value is None else number(value, name)
+
+
+def numbers(value: str | float | Sequence[float], name: str) -> list[float]:
+    """The numbers of a sequence, of a text with commas between, or one number."""
     if isinstance(value, str):
-        parts = [number(part, name) for part in value.split(",")]
-    else:
-        parts = [number(part, name) for part in value]
+        return [number(part, name) for part in value.split(",")]
+    try:
+        parts = list(value)  # type: ignore[arg-type]
+    except TypeError:
+        return [number(value, name)]  # type: ignore[arg-type]
+    return [number(part, name) for part in parts]
+
+
+def place(value: Sequence[float], name: str) -> tuple[float, float]:
+    """A place of a picture."""
+    parts = numbers(value, name)
+    if len(parts) != 2:
+        raise BadArgument(f"{name} is {value!r}; it must be two numbers")
+    return parts[0], parts[1]
+
+
+def vector(value: Vector, name: str) -> Vec3:
+    parts = numbers(value, name)
     if len(parts) != 3:
         raise BadArgument(f"{name} is {value!r}; it must be three numbers")
     return parts[0], parts[1], parts[2]
@@ -61,7 +81,7 @@ def colour(value: Colour, name: str) -> ColourMessage:
             raise BadArgument(f"{name} is {value!r}; it must be #rrggbb or #rrggbbaa")
         parts = [int(digits[i:i + 2], 16) / 255 for i in range(0, len(digits), 2)]
     else:
-        parts = [number(part, name) for part in value]
+        parts = numbers(value, name)
     if len(parts) not in (3, 4):
         raise BadArgument(f"{name} has {len(parts)} parts; it must have 3 or 4")
     r, g, b, a = parts if len(parts) == 4 else [*parts, 1.0]
@@ -69,10 +89,11 @@ def colour(value: Colour, name: str) -> ColourMessage:
 
 
 def size(value: Size) -> tuple[int, int]:
-    if isinstance(value, str):
-        parts = [whole(part, "size") for part in value.split("x")]
-    else:
-        parts = [whole(part, "size") for part in value]
+    try:
+        given: Sequence[Any] = value.split("x") if isinstance(value, str) else value
+        parts = [whole(part, "size") for part in given]
+    except TypeError:
+        parts = []
     if len(parts) != 2:
         raise BadArgument(f"size is {value!r}; it must be WIDTHxHEIGHT")
     return parts[0], parts[1]
