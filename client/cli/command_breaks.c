@@ -161,7 +161,10 @@ static const struct option_row ROWS[] = {
      apply_output, NULL},
     {"junit", 0, "FILE", "write a JUnit report, with a test case for each limit", apply_junit,
      NULL},
-    {"deadline", 0, "MS", "give up after this time, {}\n(default: none)", apply_deadline, NULL},
+    {"deadline", 0, "MS",
+     "give up after this time, {}\n(default: none). It is checked between steps of "
+     "some\nmilliseconds: what is computed within the first of them is answered",
+     apply_deadline, NULL},
     {0},
 };
 

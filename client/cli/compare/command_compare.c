@@ -405,8 +405,10 @@ static const struct option_row ROWS[] = {
      "write pages with pictures of both models in four views and maps of\n"
      "their differences, which a browser shows without scripts",
      apply_report, NULL},
-    {"deadline", 0, "MS", "give up a pair after this time, {}\n(default: none)", apply_deadline,
-     NULL},
+    {"deadline", 0, "MS",
+     "give up a pair after this time, {}\n(default: none). It is checked between steps of "
+     "some\nmilliseconds: what is computed within the first of them is answered",
+     apply_deadline, NULL},
     {0},
 };
 

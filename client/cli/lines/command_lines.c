@@ -395,7 +395,10 @@ static const struct option_row ROWS[] = {
      "surface is none",
      apply_silhouettes, NULL},
     {"visible-only", 0, NULL, "leave out what the camera does not see", apply_visible_only, NULL},
-    {"deadline", 0, "MS", "give up after this time, {}\n(default: none)", apply_deadline, NULL},
+    {"deadline", 0, "MS",
+     "give up after this time, {}\n(default: none). It is checked between steps of "
+     "some\nmilliseconds: what is computed within the first of them is answered",
+     apply_deadline, NULL},
     {0},
 };
 
