@@ -669,7 +669,7 @@ class Curves(DaemonCase):
                                ("tolerance", lambda: session.lines(model, tolerance="fine")),
                                ("gap", lambda: session.breaks(model, gap=[1])),
                                ("samples", lambda: session.compare(model, model, samples="many")),
-                               ("distance", lambda: session.compare(model, model, limits={"distance": "far"})),
+                               (r"limits\['distance'\]:", lambda: session.compare(model, model, limits={"distance": "far"})),
                                ("x", lambda: session.pick(model, camera, "left", 0)),
                                ("start", lambda: session.section(model, camera, 3, (1, 1))),
                                ("samples", lambda: session.section(model, camera, (0, 0), (1, 1), "many")),
