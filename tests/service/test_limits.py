@@ -125,14 +125,30 @@ class Workers(unittest.TestCase):
     def test_worker_output(self):
         self.refused(("--worker-output", "1M"), "more than 1 MB come out of it")
 
-    def test_worker_time(self):
-        def stop_its_process(daemon):
+    def test_stopped_jobs(self):
+        def stop_its_processes(daemon):
+            """Both of them: a job whose process was stopped is given to another one, once."""
             reader = workers(daemon.process.pid)["sheend-cage"]
-            while not (jobs := children(reader)):
-                pass
-            os.kill(jobs[0], signal.SIGSTOP)
+            stopped = set()
+            while len(stopped) < 2:
+                for job in set(children(reader)) - stopped:
+                    os.kill(job, signal.SIGSTOP)
+                    stopped.add(job)
 
-        self.refused(("--worker-time", "1"), "not done in 1 s", stop_its_process)
+        self.refused((), "its process was stopped: try again later", stop_its_processes)
+
+    def test_worker_time(self):
+        """A megabyte that takes seconds to decode, as below."""
+        daemon = Daemon("--worker-time", "1", tcp=False)
+        with Client(daemon.unix, timeout=60) as client:
+            model = client.upload(CUBE, "cube.obj")
+            image = client.upload(interlaced_png(12000, 8000), "slow.png", wire.IMAGE)
+            client.send(wire.render(70, model, extra=image_pattern(image)))
+            with self.assertRaises(wire.Refused) as caught:
+                client.read_frame(70)
+            self.assertIn("slow.png: not done in 1 s", caught.exception.text)
+            client.render(model)
+        self.assertEqual(daemon.stop(), 0)
 
     def test_worker_cpu(self):
         """A megabyte that takes seconds to decode: an interlaced picture."""

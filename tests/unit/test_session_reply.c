@@ -11,6 +11,7 @@
 
 #include <cmocka.h>
 
+#include "server/base/block_cache.h"
 #include "server/session/reply.h"
 #include "tests/unit/build_folder.h"
 #include "tests/unit/jpeg_file.h"
@@ -385,7 +386,7 @@ static void test_records_and_frames_do_not_wait_for_each_other(void **state)
     struct reply *frame = reply_expect_frame(&f->replies, 1, CLASS_BATCH);
     struct reply *records = reply_expect(&f->replies, 2), *late = reply_expect(&f->replies, 3);
     struct reply *other = reply_expect_frame(&f->replies, 4, CLASS_STILL);
-    uint8_t *bytes = malloc(5);
+    uint8_t *bytes = block_cache_take(NULL, 5);
     memcpy(bytes, "12345", 5);
     assert_true(
         reply_fill_records(records, MESSAGE_SUPERSEDED, &answer, encoded_of(NULL, bytes, 5)));
