@@ -33,6 +33,7 @@ NAMES(sheen_Pattern);
 NAMES(sheen_Light);
 NAMES(sheen_Lines);
 NAMES(sheen_Show);
+NAMES(sheen_Window);
 NAMES(sheen_Render);
 NAMES(sheen_Times);
 NAMES(sheen_Frame);
@@ -59,38 +60,17 @@ static const struct {
     const pb_msgdesc_t *fields;
     const struct field_name *names;
 } MESSAGES[] = {
-    MESSAGE(sheen_Vec3),
-    MESSAGE(sheen_Colour),
-    MESSAGE(sheen_Hello),
-    MESSAGE(sheen_HelloOk),
-    MESSAGE(sheen_UploadBegin),
-    MESSAGE(sheen_UploadState),
-    MESSAGE(sheen_ModelQuery),
-    MESSAGE(sheen_ValenceCount),
-    MESSAGE(sheen_ModelInfo),
-    MESSAGE(sheen_Finding),
-    MESSAGE(sheen_Camera),
-    MESSAGE(sheen_Pattern),
-    MESSAGE(sheen_Light),
-    MESSAGE(sheen_Lines),
-    MESSAGE(sheen_Show),
-    MESSAGE(sheen_Render),
-    MESSAGE(sheen_Times),
-    MESSAGE(sheen_Frame),
-    MESSAGE(sheen_Progress),
-    MESSAGE(sheen_Latency),
-    MESSAGE(sheen_Stats),
-    MESSAGE(sheen_FindBreaks),
-    MESSAGE(sheen_Breaks),
-    MESSAGE(sheen_ComparedPlace),
-    MESSAGE(sheen_ComparedMeasure),
-    MESSAGE(sheen_ComparedSide),
-    MESSAGE(sheen_Alignment),
-    MESSAGE(sheen_Compare),
-    MESSAGE(sheen_Compared),
-    MESSAGE(sheen_TraceLines),
-    MESSAGE(sheen_Curves),
-    MESSAGE(sheen_Error),
+    MESSAGE(sheen_Vec3),          MESSAGE(sheen_Colour),          MESSAGE(sheen_Hello),
+    MESSAGE(sheen_HelloOk),       MESSAGE(sheen_UploadBegin),     MESSAGE(sheen_UploadState),
+    MESSAGE(sheen_ModelQuery),    MESSAGE(sheen_ValenceCount),    MESSAGE(sheen_ModelInfo),
+    MESSAGE(sheen_Finding),       MESSAGE(sheen_Camera),          MESSAGE(sheen_Pattern),
+    MESSAGE(sheen_Light),         MESSAGE(sheen_Lines),           MESSAGE(sheen_Show),
+    MESSAGE(sheen_Window),        MESSAGE(sheen_Render),          MESSAGE(sheen_Times),
+    MESSAGE(sheen_Frame),         MESSAGE(sheen_Progress),        MESSAGE(sheen_Latency),
+    MESSAGE(sheen_Stats),         MESSAGE(sheen_FindBreaks),      MESSAGE(sheen_Breaks),
+    MESSAGE(sheen_ComparedPlace), MESSAGE(sheen_ComparedMeasure), MESSAGE(sheen_ComparedSide),
+    MESSAGE(sheen_Alignment),     MESSAGE(sheen_Compare),         MESSAGE(sheen_Compared),
+    MESSAGE(sheen_TraceLines),    MESSAGE(sheen_Curves),          MESSAGE(sheen_Error),
 };
 
 #define MAX_TAG 64    /* larger than every tag in sheen.proto */

@@ -61,7 +61,9 @@ static void *take(struct surface_lines *lines, size_t n, size_t size)
 static bool has_failed(const struct surface_lines *lines, struct error *error)
 {
     if (lines->is_over)
-        return !error_set(error, ERROR_SERVER, "the lines take more than %zu MB of memory",
+        return !error_set(error, ERROR_REQUEST,
+                          "the curves take more than %zu MB of memory: ask for fewer lines, or "
+                          "for a larger tolerance",
                           lines->most_bytes >> 20);
     return lines->is_short && !error_set(error, ERROR_SERVER, "out of memory for lines");
 }
