@@ -503,7 +503,7 @@ static void memory_is_bounded(void **state)
     struct surface_lines *lines = surface_lines_create(&tables, set, 1e-4, 100000, &error);
     assert_non_null(lines);
     assert_false(computation_run(surface_lines_computation(lines), &error));
-    assert_int_equal(error.kind, ERROR_SERVER);
+    assert_int_equal(error.kind, ERROR_REQUEST);
     computation_destroy(surface_lines_computation(lines));
     limit_tables_finish(&tables);
     free(set);
