@@ -95,7 +95,8 @@ class Misbehaviour(unittest.TestCase):
                "    print(flush=True)")
         process = subprocess.Popen(
             [sys.executable, "-c", ask.format(self.daemon.unix, self.model)],
-            cwd=os.path.dirname(os.path.abspath(__file__)), stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+            cwd=os.path.dirname(os.path.abspath(__file__)), stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
+            env=dict(os.environ, PYTHONPATH=os.path.join(os.environ["SHEEN_BUILD"], "python")))
         process.stdout.readline()
         process.send_signal(signal.SIGSTOP)
         self.gone.wait()
