@@ -35,12 +35,14 @@ static double tolerance_of(const struct compute *compute)
 }
 
 /* How many curves a surface has is not known in advance. A surface of n faces gets so much memory for them; curves that
- * need more are refused. A fifth of it is for the records of the answer. */
-enum { BYTES_OF_MODEL = 32 << 20, BYTES_OF_FACE = 48 << 10 };
+ * need more are refused. A fifth of it is for the records of the answer. A car of 1,575 faces fits with the default
+ * light and tolerance; a large surface gets no more than MOST_BYTES, because it is seldom seen in as much detail. */
+enum { BYTES_OF_MODEL = 32 << 20, BYTES_OF_FACE = 256 << 10, MOST_BYTES = 512 << 20 };
 
 static uint64_t bytes_of(const struct compute *compute)
 {
-    return BYTES_OF_MODEL + (uint64_t)BYTES_OF_FACE * compute->tables[0]->n_faces;
+    const uint64_t bytes = BYTES_OF_MODEL + (uint64_t)BYTES_OF_FACE * compute->tables[0]->n_faces;
+    return bytes < MOST_BYTES ? bytes : MOST_BYTES;
 }
 
 /* --- which lines */
