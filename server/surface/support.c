@@ -71,13 +71,18 @@ static void add_node(struct cells *cells, const struct limit_tables *tables, uin
         add_point(cells, (struct vec){origin[0] + (double)head->corner[0][k],
                                       origin[1] + (double)head->corner[1][k],
                                       origin[2] + (double)head->corner[2][k]});
+    struct limit_patch patch = {0}; /* so that the points of a level are made once */
     for (int i = 0; steps > 1 && i <= steps; i++)
         for (int j = 0; j <= steps; j++) {
+            if (i % steps == 0 && j % steps == 0)
+                continue; /* a corner: made from its levels, an extraordinary vertex would cost all of them */
             struct limit_place place = {
                 .node = node, .a = (double)i / steps, .b = (double)j / steps};
             struct limit_point point;
-            if (limit_evaluate_at(tables, &place, &point))
-                add_point(cells, point.s);
+            if (!limit_patch_find_again(tables, &place, &patch))
+                return;
+            limit_patch_evaluate(tables, &patch, &point);
+            add_point(cells, point.s);
         }
 }
 
