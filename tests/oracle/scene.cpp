@@ -24,8 +24,14 @@ void check(bool ok, const error &error)
         throw std::runtime_error(error.text);
 }
 
-/* Passes ranges of 16 faces to idle threads, like the daemon's pool. */
-void build(limit_tables *tables, const limit_plan *plan, int n_threads)
+vec3 from(const double a[3])
+{
+    return {a[0], a[1], a[2]};
+}
+
+} // namespace
+
+void build_all_faces(limit_tables *tables, const limit_plan *plan, int n_threads)
 {
     const size_t range = 16;
     std::vector<error> errors((size_t)n_threads);
@@ -46,13 +52,6 @@ void build(limit_tables *tables, const limit_plan *plan, int n_threads)
         check(built[k], errors[k]);
 }
 
-vec3 from(const double a[3])
-{
-    return {a[0], a[1], a[2]};
-}
-
-} // namespace
-
 scene::scene(std::shared_ptr<const struct cage> whose, int n_threads) : cage(std::move(whose))
 {
     error error;
@@ -60,7 +59,7 @@ scene::scene(std::shared_ptr<const struct cage> whose, int n_threads) : cage(std
         limit_plan_create(cage.get(), NULL, &error), limit_plan_destroy);
     check(plan != nullptr, error);
     check(limit_tables_init(&tables, limit_plan_size(plan.get()), &error), error);
-    build(&tables, plan.get(), n_threads);
+    build_all_faces(&tables, plan.get(), n_threads);
 }
 
 scene::~scene()

@@ -11,7 +11,11 @@
  * every peer gets. */
 const int bench_threads = 2;
 
-/* A cage's tables. */
+/* Builds the tables of all faces as the daemon's pool does: idle threads take ranges of 16 faces. Throws
+ * std::runtime_error if memory is short. */
+void build_all_faces(limit_tables *tables, const struct limit_plan *plan, int n_threads);
+
+/* A cage's tables, as the GL device takes them. */
 class scene
 {
   public:
