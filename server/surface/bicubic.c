@@ -4,14 +4,18 @@
 
 #include "server/surface/texels.h"
 
-void bicubic_read(const struct bicubic_texels *texels, struct vec grid[16])
+void bicubic_read(const struct bicubic_points *points, struct vec grid[16])
 {
-    for (int j = 0; j < 4; j++)
-        texels_read_row(texels->rows + 3 * j, texels->scale, grid + 4 * j);
-    if (!texels->column)
+    for (int j = 0; j < 4; j++) {
+        if (points->exact)
+            memcpy(grid + 4 * j, points->exact + points->stride * j, 4 * sizeof *grid);
+        else
+            texels_read_row(points->rows + 3 * j, points->scale, grid + 4 * j);
+    }
+    if (points->exact || !points->column)
         return;
     struct vec first[4];
-    texels_read_row(texels->column, texels->scale, first);
+    texels_read_row(points->column, points->scale, first);
     for (int j = 0; j < 4; j++) {
         memmove(grid + 4 * j + 1, grid + 4 * j, 3 * sizeof *grid);
         grid[4 * j] = first[j];
@@ -34,12 +38,12 @@ static struct blends blends_at(double t)
     };
 }
 
-void bicubic_evaluate(const struct bicubic_texels *texels, double s, double t,
+void bicubic_evaluate(const struct bicubic_points *points, double s, double t,
                       struct bicubic_point *out)
 {
     struct blends x = blends_at(s), y = blends_at(t);
     struct vec grid[16];
-    bicubic_read(texels, grid);
+    bicubic_read(points, grid);
     *out = (struct bicubic_point){0};
     for (int k = 0; k < 16; k++) {
         int i = k & 3, j = k >> 2;

@@ -6,13 +6,17 @@
 
 #include "server/surface/vec.h"
 
-/* The control points of a patch in texels (texels.h). */
-struct bicubic_texels {
-    double scale;           /* power of two by which the stored points are divided */
+/* The control points of a patch, in texels (texels.h) and perhaps also in double precision. */
+struct bicubic_points {
+    double scale;           /* power of two by which the points in texels are divided */
     const float (*rows)[4]; /* four rows */
     /* If not NULL: the first point of each row, and the last point of each row in `rows` is not
      * used. */
     const float (*column)[4];
+    /* If not NULL: point (-1,-1) before it was rounded; the next row begins `stride` points
+     * further. */
+    const struct vec *exact;
+    int stride;
 };
 
 /* A point of the patch and its derivatives by s and t. */
@@ -20,9 +24,10 @@ struct bicubic_point {
     struct vec p, ps, pt, pss, pst, ptt;
 };
 
-void bicubic_read(const struct bicubic_texels *texels, struct vec grid[16]);
+/* Copies the points, in double precision where they are given so. */
+void bicubic_read(const struct bicubic_points *points, struct vec grid[16]);
 
-void bicubic_evaluate(const struct bicubic_texels *texels, double s, double t,
+void bicubic_evaluate(const struct bicubic_points *points, double s, double t,
                       struct bicubic_point *out);
 
 /* Cuts the patch: the control points of the same surface over the square [s, s + size] x [t, t +

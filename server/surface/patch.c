@@ -13,7 +13,7 @@ static void turn_place(unsigned turn, double a, double b, double *x, double *y)
     *y = ys[turn & 3];
 }
 
-/* Finds the texels of level n and, separately, the scale: in the tables, or in what is made now. */
+/* Finds the texels of level n and, separately, the scale and patch->exact: in the tables, or in what is made now. */
 static const float (*level_texels(struct limit_patch *patch, const struct limit_tables *tables,
                                   const struct limit_node *node, int n))[4]
 {
@@ -21,8 +21,10 @@ static const float (*level_texels(struct limit_patch *patch, const struct limit_
         tables->source->make(tables->source, tables, (uint32_t)(node - tables->nodes), (unsigned)n,
                              &patch->made, NULL);
         patch->points.scale = (double)patch->made.texels[0][0];
+        patch->exact = patch->made.points;
         return (const float(*)[4])patch->made.texels + 1;
     }
+    patch->exact = NULL;
     const float(*texels)[4] = (const float(*)[4])tables->texels + node->first;
     if (node->kind == LIMIT_CORNER) {
         patch->points.scale = (double)texels[1 + (n - 1) / 4][(n - 1) % 4];
@@ -47,6 +49,8 @@ static void choose_patch(struct limit_patch *patch, const struct limit_node *nod
     patch->level = n;
     patch->points.column = NULL;
     patch->points.rows = patch->texels;
+    patch->points.exact = patch->exact;
+    patch->points.stride = 4;
     if (node->kind == LIMIT_CORNER) {
         patch->level_x = patch->level_y = n;
         patch->s = ldexp(x, n);
@@ -56,6 +60,9 @@ static void choose_patch(struct limit_patch *patch, const struct limit_node *nod
         patch->t -= far_y;
         patch->points.rows = far_y ? patch->texels + 3 : patch->texels;
         patch->points.column = far_x ? NULL : patch->texels + 15;
+        patch->points.stride = LIMIT_LEVEL_SIDE;
+        if (patch->exact)
+            patch->points.exact = patch->exact + LIMIT_LEVEL_SIDE * far_y + far_x;
     } else if (node->kind == LIMIT_STRIP) {
         /* Patch n = 1..levels covers 2^-n <= y <= 2^(1-n), patch levels + 1 the rest. */
         bool is_last = n > node->levels;
@@ -75,6 +82,7 @@ void limit_patch_in_level(struct limit_patch *patch, const struct limit_patch *k
                           double y)
 {
     patch->texels = kept->texels;
+    patch->exact = kept->exact;
     patch->points.scale = kept->points.scale;
     choose_patch(patch, kept->node, kept->level, x, y);
 }

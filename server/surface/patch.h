@@ -28,7 +28,7 @@ struct limit_place {
 /* One patch and a place on it. */
 struct limit_patch {
     const struct limit_node *node;
-    struct bicubic_texels points; /* all kinds of node have bicubic patches */
+    struct bicubic_points points; /* all kinds of node have bicubic patches */
     double s, t;                  /* the place in the patch's own parameters, in [0,1] */
     int level_x, level_y; /* s and t change 2^level times as fast as the node's local x and y */
     /* Number of corners by which local x, y are turned from the place's a, b. */
@@ -38,6 +38,7 @@ struct limit_patch {
     bool is_vertex;
     int level;                /* as in limit_patch_of_level() */
     const float (*texels)[4]; /* the points of the whole level */
+    const struct vec *exact;  /* the same in double precision (source.h); NULL from stored tables */
     struct limit_level made;  /* tables on demand: the points */
 };
 
@@ -65,7 +66,8 @@ void limit_patch_of_level(struct limit_patch *patch, const struct limit_tables *
 void limit_patch_in_level(struct limit_patch *patch, const struct limit_patch *kept, double x,
                           double y);
 
-/* Gets the 16 control points of a patch, a uniform bicubic B-spline: grid[4 (j + 1) + (i + 1)], i
+/* Gets the 16 control points of a patch, in double precision from tables on demand and rounded to single precision from
+ * stored ones. The patch is a uniform bicubic B-spline: grid[4 (j + 1) + (i + 1)], i
  * along s and j along t, both from -1 to 2, in the node's frame and in the model's units. Returns
  * the power of two by which the tables divide them. For devices that evaluate patches
  * themselves. */

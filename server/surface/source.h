@@ -14,10 +14,15 @@
 
 struct limit_tables; /* tables.h */
 
-/* The points of one level of a CORNER, or of one patch of another node, in the form in which tables
- * store them: the x of the first texel is the scale; the points' texels follow. */
+enum { LIMIT_LEVEL_SIDE = 5, LIMIT_LEVEL_POINTS = LIMIT_LEVEL_SIDE * LIMIT_LEVEL_SIDE };
+
+/* The points of one level of a CORNER, or of one patch of another node. */
 struct limit_level {
+    /* As tables store them: the x of the first texel is the scale; the points' texels follow. */
     float texels[1 + LIMIT_LEVEL_TEXELS][4];
+    /* Before they are rounded, in the node's frame and in the model's units: a CORNER's as
+     * texels_write_level() takes them, else 16 as texels_write_patch() takes them. */
+    struct vec points[LIMIT_LEVEL_POINTS];
 };
 
 struct limit_source {

@@ -13,6 +13,8 @@ const double max_normal_p999_rad = 2e-6;
 const double max_position_p999 = 1e-6; /* of the bounding diagonal */
 const double max_residual_p999_px = 0.01;
 const double max_residual_px = 0.2;
+/* Of k.min and k.max, relative to the larger of the curvature and 1/diagonal. */
+const double max_curvature_p999 = 1e-4;
 const double max_length_error = 5e-7; /* of a unit normal in single precision */
 const size_t min_hit_px = 1000;
 
@@ -22,7 +24,7 @@ struct figures {
     /* P or N is not finite where the pixel hits, or finite where it does not */
     size_t bad_value = 0;
     size_t backwards = 0; /* angle of N to the face's winding */
-    std::vector<double> normal_rad, position, residual_px, length_error;
+    std::vector<double> normal_rad, position, curvature, residual_px, length_error;
     /* angle of N to the normal by the CPU's evaluator of the same tables at (face,u,v) */
     std::vector<double> tables_rad;
 };
@@ -35,6 +37,19 @@ void measure_against_tables(const table_evaluator &tables, const planes &planes,
     bool found = tables.evaluate(planes.face[i], planes.u[i], planes.v[i], &point);
     if (found && point.has_normal() && osd_oracle_is_exact(planes.u[i], planes.v[i]))
         figures->tables_rad.push_back(angle(planes.normal(i), point.normal()));
+}
+
+/* Difference of the pixel's principal curvatures from those of the sample. */
+double curvature_difference(const model &model, const planes &planes, size_t i,
+                            const osd_sample &truth)
+{
+    vec3 n = truth.normal();
+    curvatures k = principal_curvatures(
+        {truth.p, truth.du, truth.dv, dot(truth.duu, n), dot(truth.duv, n), dot(truth.dvv, n)});
+    double size = std::fmax(std::fmax(std::fabs(k.least), std::fabs(k.most)), 1 / model.diagonal());
+    double off = std::fmax(std::fabs((double)planes.k_min[i] - k.least),
+                           std::fabs((double)planes.k_max[i] - k.most));
+    return off / size;
 }
 
 void measure_against_oracle(const model &model, const planes &planes, size_t i, figures *figures)
@@ -54,6 +69,7 @@ void measure_against_oracle(const model &model, const planes &planes, size_t i, 
     vec3 normal = truth.normal();
     figures->normal_rad.push_back(angle(planes.normal(i), normal));
     figures->backwards += dot(planes.normal(i), normal) <= 0;
+    figures->curvature.push_back(curvature_difference(model, planes, i, truth));
 }
 
 /* How far single precision alone may move P away from its pixel, in px: half a unit in the last
@@ -98,12 +114,12 @@ figures measure(const model &model, const table_evaluator &tables, const view &v
 
 void print_exactness_header()
 {
-    std::printf("%-28s %-8s %7s %5s | %31s | %15s | %15s | %7s | %7s\n", "", "", "", "near",
-                "angle of N to libosd's, rad", "|P-P'|/diagonal", "P off pixel, px", "||N|-1|",
-                "N, CPU");
-    std::printf("%-28s %-8s %7s %5s | %7s %7s %7s %7s | %7s %7s | %7s %7s | %7s | %7s\n", "model",
-                "view", "hit px", "EV px", "p50", "p99", "p99.9", "max", "p99.9", "max", "p99.9",
-                "max", "max", "p99.9");
+    std::printf("%-28s %-8s %7s %5s | %31s | %15s | %15s | %15s | %7s | %7s\n", "", "", "", "near",
+                "angle of N to libosd's, rad", "|P-P'|/diagonal", "k, relative", "P off pixel, px",
+                "||N|-1|", "N, CPU");
+    std::printf("%-28s %-8s %7s %5s | %7s %7s %7s %7s | %7s %7s | %7s %7s | %7s %7s | %7s | %7s\n",
+                "model", "view", "hit px", "EV px", "p50", "p99", "p99.9", "max", "p99.9", "max",
+                "p99.9", "max", "p99.9", "max", "max", "p99.9");
 }
 
 void judge_exactness(const model &model, const table_evaluator &tables, const view &view,
@@ -112,14 +128,15 @@ void judge_exactness(const model &model, const table_evaluator &tables, const vi
     figures f = measure(model, tables, view, planes);
     double tables999 = quantile(f.tables_rad, 0.999);
     double n999 = quantile(f.normal_rad, 0.999), p999 = quantile(f.position, 0.999);
+    double k999 = quantile(f.curvature, 0.999);
     double r999 = quantile(f.residual_px, 0.999), r_max = quantile(f.residual_px, 1);
     double unit = quantile(f.length_error, 1);
     std::printf("%-28s %-8s %7zu %5zu | %7.1e %7.1e %7.1e %7.1e | %7.1e %7.1e | %7.1e %7.1e | "
-                "%7.1e | %7.1e\n",
+                "%7.1e %7.1e | %7.1e | %7.1e\n",
                 model.name.c_str(), view.name.c_str(), f.hit, f.near_corner,
                 quantile(f.normal_rad, 0.5), quantile(f.normal_rad, 0.99), n999,
-                quantile(f.normal_rad, 1), p999, quantile(f.position, 1), r999, r_max, unit,
-                tables999);
+                quantile(f.normal_rad, 1), p999, quantile(f.position, 1), k999,
+                quantile(f.curvature, 1), r999, r_max, unit, tables999);
     std::string what = model.name + " " + view.name + ": ";
     verdict->check(f.hit >= min_hit_px, what + "only " + std::to_string(f.hit) + " pixels hit");
     verdict->check(2 * f.normal_rad.size() >= f.hit,
@@ -133,6 +150,7 @@ void judge_exactness(const model &model, const table_evaluator &tables, const vi
     verdict->at_most(n999, max_normal_p999_rad, what + "normal p99.9 (rad)");
     verdict->at_most(tables999, max_normal_p999_rad, what + "normal to the tables' p99.9 (rad)");
     verdict->at_most(p999, max_position_p999, what + "position p99.9 (diagonals)");
+    verdict->at_most(k999, max_curvature_p999, what + "curvature p99.9 (relative)");
     verdict->at_most(r999, max_residual_p999_px, what + "residual p99.9 (px)");
     verdict->at_most(r_max, max_residual_px, what + "residual max (px)");
     verdict->at_most(unit, max_length_error, what + "| |N| - 1 |");

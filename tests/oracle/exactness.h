@@ -11,7 +11,7 @@
 
 /* Prints the column heads for judge_exactness(). */
 void print_exactness_header();
-/* Needs the planes P, N and ptex. `tables` are the model's. */
+/* Needs the planes P, N, ptex and k. `tables` are the model's. */
 void judge_exactness(const model &model, const table_evaluator &tables, const view &view,
                      const planes &planes, verdict *verdict);
 

@@ -95,7 +95,8 @@ planes frame_client::draw(view *view)
     request.width_px = (uint32_t)view->width_px;
     request.height_px = (uint32_t)view->height_px;
     request.camera = camera_of(*view);
-    request.planes = SHEEN_PLANE_POSITION | SHEEN_PLANE_NORMAL | SHEEN_PLANE_PTEX;
+    request.planes =
+        SHEEN_PLANE_POSITION | SHEEN_PLANE_NORMAL | SHEEN_PLANE_PTEX | SHEEN_PLANE_CURVATURE;
     request.format = SHEEN_FORMAT_RAW;
     check(sheen_render(session, &request, nullptr, &frame, &error), error);
     if (frame.width_px != request.width_px || frame.height_px != request.height_px)
@@ -103,7 +104,8 @@ planes frame_client::draw(view *view)
     if (view->chosen_by_sheen)
         read_chosen_camera(frame.camera, view);
     const void *position = frame.plane[1], *normal = frame.plane[2], *ptex = frame.plane[3];
-    if (!position || !normal || !ptex)
+    const void *curvature = frame.plane[5];
+    if (!position || !normal || !ptex || !curvature)
         throw std::runtime_error("the frame lacks a plane");
     size_t pixels = (size_t)frame.width_px * frame.height_px;
     planes planes;
@@ -118,5 +120,7 @@ planes frame_client::draw(view *view)
     planes.face = part_of<uint32_t>(ptex, pixels, 3, 0);
     planes.u = part_of<float>(ptex, pixels, 3, 1);
     planes.v = part_of<float>(ptex, pixels, 3, 2);
+    planes.k_min = part_of<float>(curvature, pixels, 2, 0);
+    planes.k_max = part_of<float>(curvature, pixels, 2, 1);
     return planes;
 }

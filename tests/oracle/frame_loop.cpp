@@ -45,7 +45,7 @@ frame_source frames_by_command(const std::string &sheen)
 {
     return [sheen](const model &model, view *view, planes *planes) {
         int exit_code;
-        return render_view(sheen, model.path, view, "P,N,ptex", {}, planes, &exit_code);
+        return render_view(sheen, model.path, view, "P,N,ptex,k", {}, planes, &exit_code);
     };
 }
 

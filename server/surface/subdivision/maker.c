@@ -234,8 +234,10 @@ void maker_make(struct limit_source *source, const struct limit_tables *tables, 
     if (level && is_corner) {
         memset(level->texels[0], 0, sizeof level->texels[0]);
         level->texels[0][0] = texels_write_level(points, level->texels + 1);
+        memcpy(level->points, points, sizeof level->points);
     } else if (level) {
         texels_write_patch(points, level->texels);
+        memcpy(level->points, points, 16 * sizeof *points);
     }
     give(plan->makers, maker);
 }
