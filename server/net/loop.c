@@ -16,7 +16,7 @@ struct loop {
     struct loop_hooks hooks;
     struct epoll_event events[BATCH];
     int n_events; /* of the batch being delivered */
-    bool ticking, stopped;
+    bool ticking, stopped, had_input, hurries;
     uint64_t next_tick_us;
     struct intake intake;
     struct intake_party strangers;
@@ -92,9 +92,19 @@ void loop_set_ticking(struct loop *loop, bool on)
     loop->ticking = on;
 }
 
+bool loop_had_input(const struct loop *loop)
+{
+    return loop->had_input || !intake_is_empty(&loop->intake);
+}
+
+void loop_hurry(struct loop *loop)
+{
+    loop->hurries = true;
+}
+
 static int wait_ms(const struct loop *loop)
 {
-    if (!intake_is_empty(&loop->intake))
+    if (loop->hurries || !intake_is_empty(&loop->intake))
         return 0;
     if (!loop->ticking)
         return -1;
@@ -126,6 +136,8 @@ void loop_run(struct loop *loop)
                 source->ready(source, loop->events[i].events);
         }
         loop->n_events = 0;
+        loop->hurries = false;
+        loop->had_input = !intake_is_empty(&loop->intake);
         handle_input(&loop->intake);
         if (loop->ticking && clock_now_us() >= loop->next_tick_us) {
             loop->next_tick_us = clock_now_us() + LOOP_TICK_US;

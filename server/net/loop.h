@@ -46,6 +46,11 @@ struct intake *loop_intake(struct loop *loop);
 /* The party of connections that have not shown an identity yet. */
 struct intake_party *loop_strangers(struct loop *loop);
 
+/* Has a source of the intake handled input since the last call of `after`, or does one still ask? */
+bool loop_had_input(const struct loop *loop);
+/* The next batch is of the events that are there, without waiting for one. */
+void loop_hurry(struct loop *loop);
+
 /* Turns ticks on or off. Each tick wakes the process, so keep them on only while something has a
  * deadline. */
 void loop_set_ticking(struct loop *loop, bool on);

@@ -26,10 +26,10 @@ struct service {
     struct gpu_loss_log gpu_losses;
     uint64_t trimmed_us; /* when the block cache was last trimmed */
     enum service_end end;
-    uint64_t told_to_end_us; /* when a signal came; 0: none came, or drain() has been called */
-    bool overdue;            /* drain-timeout has passed and is logged */
-    bool has_driver;         /* the device draws by a driver, as struct device_try has it */
-    bool single;             /* private daemon: ends with its session */
+    uint64_t told_to_end_us;     /* when a signal came; 0: none came, or drain() has been called */
+    unsigned batches_since_told; /* batches of events since then */
+    bool has_driver;             /* the device draws by a driver, as struct device_try has it */
+    bool single;                 /* private daemon: ends with its session */
 };
 
 /* service_run.c. Makes the loop, which takes the signals that end or reload the service. Call it

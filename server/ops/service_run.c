@@ -14,8 +14,11 @@
 
 #define TRIM_US 5000000u /* memory unused for so long goes back to the system */
 /* for other threads to finish, after the last client has gone while draining */
-#define LAST_WORK_US 3000000u
-#define LAST_INPUT_US 100000u /* to take requests that came before the signal to end */
+#define LAST_WORK_TICKS (3000000u / LOOP_TICK_US)
+/* To take requests that came before the signal to end: until no input is left, but no longer than both
+ * this time and so many batches of events. */
+#define LAST_INPUT_US 100000u
+#define LAST_INPUT_BATCHES 256u
 
 static void drain(struct service *service);
 
@@ -54,9 +57,15 @@ static void leave_now(struct service *service)
 static void drain_when_told(struct service *service)
 {
     uint64_t told_us = service->told_to_end_us;
-    if (told_us == 0 || (!intake_is_empty(loop_intake(service->daemon.loop)) &&
-                         clock_now_us() - told_us < LAST_INPUT_US))
+    struct loop *loop = service->daemon.loop;
+    if (told_us == 0)
         return;
+    bool is_over = ++service->batches_since_told >= LAST_INPUT_BATCHES &&
+                   clock_now_us() - told_us >= LAST_INPUT_US;
+    if (loop_had_input(loop) && !is_over) {
+        loop_hurry(loop);
+        return;
+    }
     service->told_to_end_us = 0;
     drain(service);
 }
@@ -82,8 +91,8 @@ static void after_batch(void *owner)
     if (!store_is_building(daemon->store) && scheduler_is_idle(&daemon->requests.scheduler) &&
         daemon->requests.n_file_loads == 0 && daemon->requests.n_computing == 0)
         loop_stop(daemon->loop);
-    else if (service->single || session_host_overdue_us(&daemon->sessions, clock_now_us()) >
-                                    SESSION_LAST_WORDS_US + LAST_WORK_US)
+    else if (service->single ||
+             daemon->sessions.overdue_ticks > SESSION_LAST_WORDS_TICKS + LAST_WORK_TICKS)
         leave_now(service); /* a tile or a table may still take long, and no client waits for it */
 }
 
@@ -92,11 +101,10 @@ static void tick(void *owner)
     struct service *service = owner;
     struct daemon *daemon = &service->daemon;
     uint64_t now = clock_now_us();
-    if (!service->overdue && session_host_overdue_us(&daemon->sessions, now) > 0) {
-        service->overdue = true;
+    session_host_tick(&daemon->sessions, now);
+    if (daemon->sessions.overdue_ticks == 1)
         log_event(LOG_WARN, "drain-timeout is over: what is not done is refused",
                   log_number("sessions", daemon->sessions.n_sessions));
-    }
     struct session *session;
     LIST_FOREACH (session, &service->sessions, link)
         session_tick(session, now);

@@ -280,7 +280,7 @@ void session_tick(struct session *session, uint64_t now_us)
         return;
     if (now_us - session->conn.last_in_us > SESSION_TRIM_US)
         session_trim_input(session);
-    if (session_host_overdue_us(session->host, now_us) > 0)
+    if (session->host->overdue_ticks > 0)
         request_shut_down_all(&session->requests, session->host->limits.drain_s);
     request_end_late(&session->requests, now_us);
     request_report_progress(&session->requests);

@@ -10,8 +10,8 @@
 
 #include "server/session/session_state.h"
 
-/* How long ago drain-timeout has passed, in microseconds; 0: not draining, or not passed yet. */
-uint64_t session_host_overdue_us(const struct session_host *host, uint64_t now_us);
+/* Call it at each tick, before session_tick() of all sessions: counts host->overdue_ticks. */
+void session_host_tick(struct session_host *host, uint64_t now_us);
 
 /* Takes a seat for one more connection of an identity. False with ERROR_SERVER when the identity
  * has as many connections as it may, or when memory is short. The caller owns the seat until

@@ -46,10 +46,15 @@ bool session_may_send(struct session *session)
     return false;
 }
 
-uint64_t session_host_overdue_us(const struct session_host *host, uint64_t now_us)
+void session_host_tick(struct session_host *host, uint64_t now_us)
 {
-    uint64_t end_us = host->drain_start_us + host->limits.drain_s * 1000000;
-    return host->draining && now_us > end_us ? now_us - end_us : 0;
+    if (host->draining && now_us > host->drain_start_us + host->limits.drain_s * 1000000)
+        host->overdue_ticks++;
+}
+
+static bool had_last_words(const struct session_host *host)
+{
+    return host->overdue_ticks > SESSION_LAST_WORDS_TICKS;
 }
 
 /* The limit of unsent output that the client exceeds; NULL: none. */
@@ -69,9 +74,7 @@ static const char *output_limit(struct session *session, uint64_t now)
     }
     if (unsent > 0 && now - session->conn.last_out_us > limits->stall_s * 1000000)
         return "no byte read for stall-timeout";
-    return unsent > 0 && session_host_overdue_us(session->host, now) > SESSION_LAST_WORDS_US
-               ? "not read within drain-timeout"
-               : NULL;
+    return unsent > 0 && had_last_words(session->host) ? "not read within drain-timeout" : NULL;
 }
 
 /* Ends the session of a client that was silent for too long, and tells it the limit. */
@@ -121,7 +124,7 @@ void session_check_limits(struct session *session, uint64_t now)
     const char *limit = output_limit(session, now);
     if (limit)
         disconnect(session, "%zu bytes unsent: %s", conn_unsent_bytes(conn), limit);
-    else if (session_host_overdue_us(session->host, now) > SESSION_LAST_WORDS_US)
+    else if (had_last_words(session->host))
         conn_close(conn); /* the client was told, but has not closed its side */
     else if (conn->state == CONN_LINGERING && now - conn->last_in_us > SESSION_LINGER_US)
         conn_close(conn);

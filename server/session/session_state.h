@@ -23,9 +23,10 @@
 #define SESSION_MAX_UNSENT_BYTES (4u * 1024 * 1024)
 /* At the end of a connection: the longest time from shutdown() until the peer closes too. */
 #define SESSION_LINGER_US 2000000u
-/* When drain-timeout has passed, every request is answered; this much later all connections
- * close. */
-#define SESSION_LAST_WORDS_US 1000000u
+/* When drain-timeout has passed, every request is answered; so many ticks of the loop later all
+ * connections close. Ticks and not a time: after a machine has stopped the daemon for a while, clients
+ * still have their answers before their connections close. */
+#define SESSION_LAST_WORDS_TICKS (1000000u / LOOP_TICK_US)
 /* After this time without input, a connection frees its memory for long messages. */
 #define SESSION_TRIM_US 1000000u
 
@@ -74,6 +75,7 @@ struct session_host {
     /* The daemon ends: new requests are refused, replies must be read soon. */
     bool draining;
     uint64_t drain_start_us;
+    uint32_t overdue_ticks; /* ticks since drain-timeout has passed; 0: it has not */
 };
 
 /* What is known of a client when it connects. */

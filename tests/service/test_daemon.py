@@ -313,16 +313,22 @@ class Shutdown(unittest.TestCase):
             self.assertLess(time.monotonic() - start, 5)
         self.assertEqual(daemon.stop(), 0)
 
-    @judges_time
-    def test_what_takes_too_long_is_refused(self):
-        """When the daemon's second for draining is over, there is at least half a minute of work left."""
+    def assert_slow_requests_are_refused(self, stopped_s):
+        """When the daemon's second for draining is over, there are many seconds of work left. Files are small, so that
+        reading them takes no time. `stopped_s`: how long nothing of the daemon runs after it has begun to drain."""
         daemon = Daemon("--drain-timeout", "1")
         with Client(daemon.unix, timeout=60, minor=1) as client, \
              Client(daemon.tcp, timeout=60, minor=1) as quick:
             model = client.upload(CUBE, "cube.obj", share=True)
-            asked = [client.ask(model, 4096, 4096, kind=wire.BATCH) for _ in range(16)]
+            asked = [client.ask(model, 8192, 4096, kind=wire.BATCH, encoding=wire.JPEG)
+                     for _ in range(16)]
             small = quick.ask(model)
             daemon.terminate()
+            if stopped_s:
+                daemon.wait_for("shutting down")
+                daemon.process.send_signal(signal.SIGSTOP)
+                time.sleep(stopped_s)
+                daemon.process.send_signal(signal.SIGCONT)
             self.assertEqual(quick.answer()[0], small)
             self.assert_told(quick)
             answers = dict(client.answer() for _ in asked)
@@ -334,9 +340,38 @@ class Shutdown(unittest.TestCase):
                 self.assertIn("not done within the 1 s (drain-timeout)", one.text)
             self.assert_told(client)
         self.assertEqual(daemon.wait(10), 0)
-        self.assertIn("drain-timeout is over", daemon.errors())
-        self.assertNotIn("at work", daemon.errors())
+        log = daemon.errors()
+        self.assertIn("drain-timeout is over", log)
         daemon.stop()
+        return log
+
+    def test_what_was_sent_before_the_signal_is_answered(self):
+        """The requests fill what the daemon reads at once, 4096 bytes, exactly twice."""
+        daemon = Daemon("--credits", "32")
+        with Client(daemon.unix, minor=1) as client:
+            daemon.process.send_signal(signal.SIGSTOP)
+            asked = [client.next_seq() for _ in range(client.credits)]
+            for seq in asked:
+                query = wire.message(wire.MODEL_QUERY, seq, wire.field(1, bytes(32)) +
+                                     wire.field(2, 203 * "x"))
+                self.assertEqual(len(query), 256)
+                client.send(query)
+            daemon.terminate()
+            daemon.process.send_signal(signal.SIGCONT)
+            for seq in asked:
+                with self.assertRaises(wire.Refused) as caught:
+                    client.receive()
+                self.assertEqual(caught.exception.seq, seq)
+                self.assertNotEqual(caught.exception.code, wire.ERROR_SHUTTING_DOWN)
+            self.assert_told(client)
+        self.assertEqual(daemon.stop(), 0)
+
+    @judges_time
+    def test_what_takes_too_long_is_refused(self):
+        self.assertNotIn("at work", self.assert_slow_requests_are_refused(stopped_s=0))
+
+    def test_a_daemon_that_stood_still_answers_before_it_leaves(self):
+        self.assert_slow_requests_are_refused(stopped_s=2.5)
 
     def test_a_tile_after_the_time_is_the_last(self):
         """One frame of many tiles; the daemon looks at the clock between tiles."""
