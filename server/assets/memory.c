@@ -30,22 +30,24 @@ static void count_spares(struct memory *memory)
 
 static void drop_run(struct task *task, void *context)
 {
-    (void)task;
+    struct memory *memory = task->owner;
     renderer_drop_held(context);
+    memory->left = renderer_held(context);
 }
 
 static void drop_done(struct task *task)
 {
     struct memory *memory = task->owner;
     memory->is_dropping = false;
+    memory_set_held(memory, &memory->left);
 }
 
 /* The render thread frees what the device holds before it draws what is submitted after this. */
 static void drop_held(struct memory *memory)
 {
-    if (memory->held_bytes == 0 || memory->is_dropping)
+    if (memory->held_bytes + memory->programs_bytes == 0 || memory->is_dropping)
         return;
-    set_used(store_account(memory->store), ACCOUNT_DEVICE, &memory->held_bytes, 0);
+    memory_set_held(memory, &(struct renderer_held){0, 0});
     memory->is_dropping = true;
     memory->drop = (struct task){drop_run, drop_done, memory, {NULL}};
     render_thread_submit(memory->render_thread, &memory->drop);
@@ -64,10 +66,13 @@ static void relieve(void *owner, uint64_t bytes, bool is_last_resort)
         drop_held(memory);
 }
 
-void memory_set_held(struct memory *memory, uint64_t bytes)
+void memory_set_held(struct memory *memory, const struct renderer_held *held)
 {
-    if (!memory->is_dropping)
-        set_used(store_account(memory->store), ACCOUNT_DEVICE, &memory->held_bytes, bytes);
+    struct account *daemon = store_account(memory->store);
+    if (memory->is_dropping)
+        return;
+    set_used(daemon, ACCOUNT_DEVICE, &memory->held_bytes, held->frames);
+    set_used(daemon, ACCOUNT_DEVICE, &memory->programs_bytes, held->programs);
 }
 
 void memory_count(struct memory *memory)

@@ -14,10 +14,11 @@ struct memory {
     struct render_thread *render_thread;
     struct block_cache *block_cache; /* memory of charges; NULL: malloc() */
     struct client_quotas quotas;
-    /* Charged to the store's account for what nobody in particular uses: what the device holds, and
-     * spare blocks. */
-    uint64_t held_bytes, spare_bytes;
-    struct task drop; /* the device frees what it holds */
+    /* Charged to the store's account for what nobody in particular uses: what the device holds for
+     * frames, its driver's programs, and spare blocks. */
+    uint64_t held_bytes, programs_bytes, spare_bytes;
+    struct task drop;          /* the device frees what it holds */
+    struct renderer_held left; /* after that */
     bool is_dropping;
 };
 
@@ -26,9 +27,9 @@ void memory_init(struct memory *memory, struct store *store, const struct asset_
                  bool is_private, struct render_thread *render_thread,
                  struct block_cache *block_cache);
 
-/* Charges what the device holds now (renderer_held_bytes()), after each step of a frame. When nothing
- * else makes room, the device has to give it up. */
-void memory_set_held(struct memory *memory, uint64_t bytes);
+/* Charges what the device holds now, after each step of a frame. When nothing else makes room, the
+ * device has to give it up. */
+void memory_set_held(struct memory *memory, const struct renderer_held *held);
 /* Brings the account of spare blocks up to date. */
 void memory_count(struct memory *memory);
 

@@ -250,7 +250,7 @@ static void step_run(struct task *task, void *context)
         request->step = renderer_step(context, request->model.asset->model->gpu,
                                       &request->frame_work, &request->frame, &request->failure);
     request->step_us = clock_now_us() - start_us;
-    request->held_bytes = renderer_held_bytes(context);
+    request->held_by_device = renderer_held(context);
 }
 
 /* Records that the device has the polygons of this frame. */
@@ -305,7 +305,7 @@ static void step_done(struct task *task)
     struct request_host *host = request->host;
     scheduler_stepped(&host->scheduler, &request->entry, request->step_us,
                       request->step == FRAME_MORE);
-    memory_set_held(host->memory, request->held_bytes);
+    memory_set_held(host->memory, &request->held_by_device);
     /* The device has the planes of an exact frame after its first tile. */
     if (request->step != FRAME_PROGRAMS &&
         (request->step != FRAME_MORE || request->frame_request.surface.kind == SURFACE_EXACT))

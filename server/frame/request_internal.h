@@ -49,7 +49,7 @@ struct request {
     struct schedule_entry entry;
     uint64_t cost_key;
     uint64_t frame_bytes;
-    uint64_t held_bytes; /* what the device holds, after the last step */
+    struct renderer_held held_by_device; /* after the last step */
     /* Memory of the frame; NULL: none yet, or handed to the encoded frame. */
     struct memory_charge *charge;
 

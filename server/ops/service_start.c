@@ -79,10 +79,11 @@ static bool start_threads(struct service *service, struct error *error)
 }
 
 /* What the daemon itself takes of the budget, and still takes when it has served for a while: what the device's
- * drivers have taken by now, too. */
+ * drivers have taken by now and will take for the programs of usual frames, too. */
 static uint64_t daemon_bytes(const struct service *service)
 {
-    uint64_t resident = service->has_driver ? resident_bytes() : 0;
+    const struct renderer_info *info = render_thread_info(service->daemon.render_thread);
+    uint64_t resident = service->has_driver ? resident_bytes() + info->usual_programs_bytes : 0;
     return resident > PROTOCOL_DAEMON_BYTES ? resident : PROTOCOL_DAEMON_BYTES;
 }
 

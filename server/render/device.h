@@ -63,7 +63,7 @@ struct renderer_device {
     uint64_t (*frame_bytes)(const struct renderer_frame_size *size);
     uint64_t (*paused_bytes)(uint32_t width_px, uint32_t height_px, uint64_t tile_px);
 
-    uint64_t (*held_bytes)(const struct renderer *renderer);
+    struct renderer_held (*held)(const struct renderer *renderer);
     void (*drop_held)(struct renderer *renderer);
 
     /* Sets work->state, if the device needs one, and work->in_place. */

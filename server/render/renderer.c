@@ -76,9 +76,9 @@ uint64_t renderer_frame_bytes(const struct renderer_device *device,
     return device->frame_bytes(&drawn);
 }
 
-uint64_t renderer_held_bytes(const struct renderer *renderer)
+struct renderer_held renderer_held(const struct renderer *renderer)
 {
-    return renderer->device->held_bytes(renderer);
+    return renderer->device->held(renderer);
 }
 
 void renderer_drop_held(struct renderer *renderer)

@@ -65,10 +65,9 @@ uint64_t renderer_frame_bytes(const struct renderer_device *device,
 uint64_t renderer_paused_bytes(const struct renderer_device *device, uint32_t width_px,
                                uint32_t height_px, uint64_t tile_px);
 
-/* The memory in bytes that the device holds for frames now, and may hold on to. */
-uint64_t renderer_held_bytes(const struct renderer *renderer);
-/* Frees what is held for frames, kept views too: later frames are drawn anew. Safe between the steps
- * of a frame. */
+struct renderer_held renderer_held(const struct renderer *renderer);
+/* Frees what is held for frames, kept views too: later frames are drawn anew. Frees programs beyond
+ * the number of the usual ones, too. Safe between the steps of a frame. */
 void renderer_drop_held(struct renderer *renderer);
 
 /* Checks the request (ERROR_REQUEST names the field and its range), cuts the frame into tiles and

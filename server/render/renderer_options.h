@@ -40,6 +40,14 @@ struct renderer_info {
     unsigned n_threads;   /* threads of the native device; 0: another device */
     bool timed_by_device; /* frame_times are measured by the device, not by the clock */
     uint32_t max_width_px, max_height_px;
+    /* What the driver takes in bytes for the programs of usual frames, after the device is open. */
+    uint64_t usual_programs_bytes;
+};
+
+/* The memory in bytes that a device holds now, and may hold on to. */
+struct renderer_held {
+    uint64_t frames;   /* to draw on, and kept views */
+    uint64_t programs; /* of the driver, for programs beyond those of usual frames */
 };
 
 /* What the memory for a frame depends on. */

@@ -184,6 +184,40 @@ static void test_room(void **state)
     scene_finish(&scene);
 }
 
+/* What the budget has no room for goes, the program used longest ago first, but none that a frame holds. */
+static void test_drop(void **state)
+{
+    (void)state;
+    struct scene scene;
+    scene_init(&scene, tetrahedron);
+    struct kept_programs *programs = kept_programs_create(NULL, NULL);
+    struct program_hold held = {0}, other = {0};
+    hold(programs, &held, 0, 6);
+    hold(programs, &other, 6, 6);
+    program_hold_end(&other);
+    hold(programs, &other, 8, 1); /* now the one used last */
+    program_hold_end(&other);
+    int n = count_programs();
+    kept_programs_drop(programs, 12);
+    assert_int_equal(kept_programs_count(programs), 12);
+    kept_programs_drop(programs, 7);
+    assert_int_equal(count_programs(), n - 5);
+    for (int i = 0; i < 12; i++) {
+        const struct program_id id = numbered(i);
+        if ((kept_programs_find(programs, &id, NULL) != 0) != (i < 6 || i == 8))
+            fail_msg("program %d", i);
+    }
+    kept_programs_drop(programs, 0);
+    assert_int_equal(kept_programs_count(programs), 6);
+    program_hold_end(&held);
+    kept_programs_drop(programs, 0);
+    assert_int_equal(kept_programs_count(programs), 0);
+    hold(programs, &held, 0, 6); /* made again */
+    program_hold_end(&held);
+    kept_programs_release(programs);
+    scene_finish(&scene);
+}
+
 /* A frame for whose programs there is no room, because other frames hold theirs, waits until one of
  * these is drawn or given up. */
 static void test_full(void **state)
@@ -313,13 +347,10 @@ static void test_no_powers_of_two(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_one_a_step),
-        cmocka_unit_test(test_soft),
-        cmocka_unit_test(test_orders),
-        cmocka_unit_test(test_room),
-        cmocka_unit_test(test_full),
-        cmocka_unit_test(test_layouts),
-        cmocka_unit_test(test_no_powers_of_two),
+        cmocka_unit_test(test_one_a_step), cmocka_unit_test(test_soft),
+        cmocka_unit_test(test_orders),     cmocka_unit_test(test_room),
+        cmocka_unit_test(test_drop),       cmocka_unit_test(test_full),
+        cmocka_unit_test(test_layouts),    cmocka_unit_test(test_no_powers_of_two),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -19,6 +19,8 @@
 #include "server/render/gl/light_image.h"
 #include "server/render/gl/model.h"
 
+enum { MAX_USUAL_PROGRAMS = 2 * TABLE_PROGRAMS + 2 + MAX_FRAME_PROGRAMS };
+
 static void query_info(struct gl_renderer *r)
 {
     GLint texels = 0, texture = 0, viewport[2] = {0, 0};
@@ -71,22 +73,29 @@ static void destroy(struct renderer *renderer)
     free(r);
 }
 
-/* Orders the programs of usual frames: one light around the model, planes of lines and curvature, and
- * polygons; of models whose tables fit into one texture each. */
-static void warm_up(struct gl_renderer *r)
+/* The programs of usual frames: one light around the model, planes of lines and curvature, and
+ * polygons; of models whose tables fit into one texture each. Returns their number. */
+static int usual_programs(const struct gl_renderer *r,
+                          struct program_id ids[static MAX_USUAL_PROGRAMS])
 {
     static const struct frame_request usual = {.n_lights = 1,
                                                .lights = {{.kind = LIGHT_TUNNEL}},
                                                .count_light = true,
                                                .planes = PLANE_LIGHT};
     const struct gl_model model = {.points.n = 1, .nodes.n = 1, .adjacency.n = 1};
-    struct program_id ids[2 * TABLE_PROGRAMS + 2 + MAX_FRAME_PROGRAMS];
     int n = 2 * TABLE_PROGRAMS;
     gl_model_programs(r, &model, false, ids);
     gl_model_programs(r, &model, true, ids + TABLE_PROGRAMS);
     n += stage_shade_programs(&usual, ids + n);
     ids[n++] = (struct program_id){.set = SET_SINGLE, .which = PROGRAM_POLYGONS};
     ids[n++] = (struct program_id){.set = SET_SINGLE, .which = PROGRAM_WIREFRAME};
+    return n;
+}
+
+static void warm_up(struct gl_renderer *r)
+{
+    struct program_id ids[MAX_USUAL_PROGRAMS];
+    const int n = usual_programs(r, ids);
     for (int i = 0; i < n; i++)
         kept_programs_order(r->programs, &ids[i]);
 }
@@ -118,6 +127,8 @@ static struct renderer *create(const struct renderer_options *options, struct er
         destroy(&r->base);
         return NULL;
     }
+    struct program_id usual[MAX_USUAL_PROGRAMS];
+    r->base.info.usual_programs_bytes = (uint64_t)usual_programs(r, usual) * PROGRAM_BYTES;
     if (options->warm_up)
         warm_up(r);
     return &r->base;
@@ -198,17 +209,22 @@ static enum frame_step step(struct renderer *renderer, struct renderer_model *mo
     return gl_frame_step(renderer, model, work, frame, error);
 }
 
-static uint64_t held_bytes(const struct renderer *renderer)
+static struct renderer_held held(const struct renderer *renderer)
 {
     const struct gl_renderer *r = (const struct gl_renderer *)(const void *)renderer;
-    return r->context.is_lost ? 0 : planes_bytes(r);
+    const uint64_t programs = (uint64_t)kept_programs_count(r->programs) * PROGRAM_BYTES;
+    const uint64_t usual = r->base.info.usual_programs_bytes;
+    return (struct renderer_held){.frames = r->context.is_lost ? 0 : planes_bytes(r),
+                                  .programs = programs > usual ? programs - usual : 0};
 }
 
 static void drop_held(struct renderer *renderer)
 {
     struct gl_renderer *r = gl_renderer_of(renderer);
-    if (!r->context.is_lost)
-        planes_drop(r);
+    if (r->context.is_lost)
+        return;
+    planes_drop(r);
+    kept_programs_drop(r->programs, (unsigned)(r->base.info.usual_programs_bytes / PROGRAM_BYTES));
 }
 
 const struct renderer_device gl_device = {
@@ -222,7 +238,7 @@ const struct renderer_device gl_device = {
     .image_bytes = gl_image_bytes,
     .frame_bytes = gl_frame_bytes,
     .paused_bytes = gl_paused_bytes,
-    .held_bytes = held_bytes,
+    .held = held,
     .drop_held = drop_held,
     .begin = gl_frame_begin,
     .step = step,

@@ -267,12 +267,41 @@ void kept_programs_forget(struct kept_programs *programs)
     pthread_mutex_unlock(&programs->lock);
 }
 
-unsigned kept_programs_count(struct kept_programs *programs)
+static unsigned count_made(const struct kept_programs *programs)
 {
     unsigned n = 0;
-    pthread_mutex_lock(&programs->lock);
     for (int i = 0; i < MAX_KEPT_PROGRAMS; i++)
         n += programs->place[i].state == PLACE_MADE;
+    return n;
+}
+
+static struct place *oldest_unheld(struct kept_programs *programs)
+{
+    struct place *oldest = NULL;
+    for (int i = 0; i < MAX_KEPT_PROGRAMS; i++) {
+        struct place *place = &programs->place[i];
+        if (place->state == PLACE_MADE && place->n_holders == 0 &&
+            (!oldest || place->used < oldest->used))
+            oldest = place;
+    }
+    return oldest;
+}
+
+void kept_programs_drop(struct kept_programs *programs, unsigned most)
+{
+    struct place *place;
+    pthread_mutex_lock(&programs->lock);
+    while (count_made(programs) > most && (place = oldest_unheld(programs))) {
+        glDeleteProgram(place->name);
+        *place = (struct place){.state = PLACE_FREE};
+    }
+    pthread_mutex_unlock(&programs->lock);
+}
+
+unsigned kept_programs_count(struct kept_programs *programs)
+{
+    pthread_mutex_lock(&programs->lock);
+    unsigned n = count_made(programs);
     pthread_mutex_unlock(&programs->lock);
     return n;
 }

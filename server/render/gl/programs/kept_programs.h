@@ -17,8 +17,9 @@ enum {
      * each light, and one for its planes. */
     MAX_FRAME_PROGRAMS = TABLE_PROGRAMS + 5 * MAX_LIGHTS + 1,
     MAX_KEPT_PROGRAMS = 64,
-    /* What a program takes of main memory on Mesa's software device, as measured there. */
-    SOFTWARE_PROGRAM_BYTES = 3500000
+    /* What a program takes of main memory at most, as measured on Mesa's software device without kept
+     * shaders; 2 MB with them. */
+    PROGRAM_BYTES = 7000000
 };
 
 struct kept_programs;
@@ -71,6 +72,9 @@ void kept_programs_order(struct kept_programs *programs, const struct program_id
 /* The context is lost: all names are invalid, and what frames hold is made again. No maker may be
  * working. GL thread. */
 void kept_programs_forget(struct kept_programs *programs);
+/* Removes programs that no frame holds, those used longest ago first, until at most so many are made.
+ * GL thread. */
+void kept_programs_drop(struct kept_programs *programs, unsigned most);
 /* The number of programs that are made. Any thread. */
 unsigned kept_programs_count(struct kept_programs *programs);
 

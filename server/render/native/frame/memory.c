@@ -31,13 +31,13 @@ static uint64_t held_by(const struct native_target *target)
            sizeof(uint32_t);
 }
 
-uint64_t native_frame_held_bytes(const struct renderer *renderer)
+struct renderer_held native_frame_held(const struct renderer *renderer)
 {
     const struct native_renderer *r = (const struct native_renderer *)(const void *)renderer;
     uint64_t bytes = 0;
     for (int i = 0; i < NATIVE_PLANES; i++)
         bytes += held_by(&r->planes[i].target);
-    return bytes;
+    return (struct renderer_held){.frames = bytes};
 }
 
 void native_frame_drop_held(struct renderer *renderer)
