@@ -410,6 +410,7 @@ install: all
 	ln -sf libsheen.so.0 $(DEST_LIB)/libsheen.so
 	install -Dm644 -t $(DEST_LIB) $(BUILD)/libsheen.a
 	install -Dm644 -t $(DEST)/include client/lib/sheen.h
+	install -Dm644 -t $(DEST)/include/sheen client/lib/sheen/*.h
 	install -Dm644 -t $(DESTDIR)$(PYTHONDIR)/sheen $(BUILD)/python/sheen/*.py $(BUILD)/python/sheen/py.typed
 	install -Dm644 -t $(DESTDIR)$(PYTHONDIR)/sheen-$(VERSION).dist-info $(BUILD)/python/sheen-$(VERSION).dist-info/METADATA
 	install -d $(DEST_LIB)/pkgconfig

@@ -42,7 +42,8 @@ $found"
 }
 common='server/base'
 room protocol '' 'both sides speak by it'
-room client/lib 'protocol' 'a client needs nothing of the daemon'
+room client/lib/sheen '' 'it is installed, without other files'
+room client/lib 'protocol|sheen' 'a client needs nothing of the daemon'
 room client/lib/files 'client/lib|protocol' 'reading files for uploads needs no session'
 room client/lib/numbers 'client/lib|protocol' 'requests of computed numbers are made of what requests of frames are made of'
 room client/cli/base 'client/lib|protocol' 'every part of the command knows it'
@@ -152,11 +153,13 @@ for file in $(grep -oE '`(server|client|protocol)/[a-z0-9/_]+\.[a-z]+`' CONTRIBU
     [ -e "$file" ] || fail "CONTRIBUTING.md names $file, which is not there"
 done
 
-# No file may include itself through other files. NAME.c and NAME.h count as one file. Prints each circle in the
-# order of its includes; circles that share a file with an earlier one are left out.
+# No file may include itself through other files. NAME.c and NAME.h count as one file. The headers of libsheen name each
+# other from their own folder. Prints each circle in the order of its includes; circles that share a file with an
+# earlier one are left out.
 # shellcheck disable=SC2086
-circles=$(grep -E '^#include "(server|client|protocol)/' $(printf '%s\n' $files | grep -E '^(server|client|protocol)/') |
-    sed -E 's/^([^:]*):#include "([^"]*)".*/\1 \2/; s/\.[a-z]+( |$)/\1/g' |
+circles=$(grep -E '^#include "' $(printf '%s\n' $files | grep -E '^(server|client|protocol)/') |
+    sed -E 's,^([^:]*/)([^:/]*:#include ")(sheen/)?([^/"]*"),\1\2\1\3\4,
+        s/^([^:]*):#include "([^"]*)".*/\1 \2/; s/\.[a-z]+( |$)/\1/g' |
     awk '$1 != $2 && !seen[$1, $2]++ { to[$1] = to[$1] " " $2; left[$1] = 1 }
         # The first remaining file that a file includes.
         function next_of(file, i, n, list) {

@@ -30,13 +30,15 @@ with open(os.path.join(ROOT, "Makefile"), encoding="utf-8") as _file:
 
 PROGRAMS = ["bin/sheen", "bin/sheend", "libexec/sheen/sheend-cage", "libexec/sheen/sheend-image"]
 LINKS = {"lib/here/libsheen.so": "libsheen.so.0", "lib/here/libsheen.so.0": f"libsheen.so.{VERSION}"}
+HEADERS = ("include/sheen.h", *(f"include/sheen/{part}.h" for part in (
+    "base", "breaks", "compare", "curves", "files", "frame", "model", "request", "scene", "session", "stats")))
 FILES = sorted([
     *PROGRAMS,
     *LINKS,
     f"lib/here/libsheen.so.{VERSION}",
     "lib/here/libsheen.a",
     "lib/here/pkgconfig/sheen.pc",
-    "include/sheen.h",
+    *HEADERS,
     *(f"{PYTHON}/sheen/{module}.py" for module in MODULES),
     f"{PYTHON}/sheen/py.typed",
     f"{PYTHON}/sheen-{VERSION}.dist-info/METADATA",
@@ -222,8 +224,10 @@ class Library(Installed):
         return re.findall(r"^[0-9a-f]+ ([A-Z]) (\S+)$", text, re.M)
 
     def test_it_shows_what_sheen_h_declares(self):
-        with open(self.path("include/sheen.h"), encoding="utf-8") as file:
-            header = re.sub(r"/\*.*?\*/", "", file.read(), flags=re.S)
+        header = ""
+        for name in HEADERS:
+            with open(self.path(name), encoding="utf-8") as file:
+                header += re.sub(r"/\*.*?\*/", "", file.read(), flags=re.S)
         header = re.sub(r"^static inline .*?^}", "", header, flags=re.S | re.M)
         declared = sorted(re.findall(r"^\w[\w \n*]*?\b(sheen_\w+)\(", header, re.M))
         self.assertGreater(len(declared), 20)
@@ -242,17 +246,19 @@ class Library(Installed):
                               capture_output=True, text=True).stdout
         self.assertIn("Library soname: [libsheen.so.0]", text)
 
-    def test_the_header_stands_alone(self):
-        source = os.path.join(self.work, "header.c")
-        with open(source, "w", encoding="ascii") as file:
-            file.write("#include <sheen.h>\n")
+    def test_each_header_stands_alone(self):
+        sources = []
+        for name in HEADERS:
+            sources.append(os.path.join(self.work, name.replace("/", "_") + ".c"))
+            with open(sources[-1], "w", encoding="ascii") as file:
+                file.write(f"#include <{name.partition('/')[2]}>\n")
         languages = (["-x", "c", "-std=c11"], ["-x", "c++", "-std=c++17"])
         compilers = [name for name in ("gcc", "clang", "clang-14") if shutil.which(name)]
         for compiler in compilers:
             for language in languages:
                 with self.subTest(compiler=compiler, language=language):
                     done = subprocess.run([compiler, *language, *STRICT, "-Wshadow", "-fsyntax-only",
-                                           f"-I{self.path('include')}", source],
+                                           f"-I{self.path('include')}", *sources],
                                           capture_output=True, text=True, timeout=60)
                     self.assertEqual(done.returncode, 0, done.stderr)
 
