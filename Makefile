@@ -79,7 +79,7 @@ say = $(if $(V),,@echo '  $(1)')
 obj = $(patsubst %,$(BUILD)/obj/%.o,$(1))
 PROTOCOL_SRC := $(wildcard protocol/*.c)
 CAGE_SRC := $(wildcard server/cage/*.c)
-CAGE_READ_SRC := $(wildcard server/cage/build/*.c server/cage/read/*.c server/cage/read/gltf/*.c server/cage/read/gltf/*.cpp)
+CAGE_READ_SRC := $(wildcard server/cage/build/*.c server/cage/read/*.c server/cage/read/*/*.c server/cage/read/gltf/*.cpp)
 SURFACE_SRC := $(wildcard server/surface/*.c server/surface/topology/*.c server/surface/subdivision/*.c)
 # Converts between messages and scenes: only for programs that speak the protocol.
 CONVERT_SRC := $(wildcard server/scene/scene_convert*.c)

@@ -10,8 +10,8 @@ for name in "$@"; do
 done
 # The protocol, the readers, and the code that reads answers of workers.
 for object in "$build"/obj/protocol/*.gcno "$build"/obj/server/cage/*.gcno \
-    "$build"/obj/server/cage/build/*.gcno "$build"/obj/server/cage/read/*.gcno "$build"/obj/server/cage/read/gltf/*.gcno "$build"/obj/server/sandbox/stream.*.gcno \
-    "$build"/obj/server/sandbox/job.*.gcno "$build"/obj/server/sandbox/*_code.*.gcno; do
+    "$build"/obj/server/cage/build/*.gcno "$build"/obj/server/cage/read/*.gcno "$build"/obj/server/cage/read/*/*.gcno \
+    "$build"/obj/server/sandbox/stream.*.gcno "$build"/obj/server/sandbox/job.*.gcno "$build"/obj/server/sandbox/*_code.*.gcno; do
     gcov -n -s "$(pwd)" -r "$object" 2>/dev/null
 done | awk -v least=85 '
     /^File/ { file = $2; gsub(/\047/, "", file) }

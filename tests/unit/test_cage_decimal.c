@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "server/cage/read/decimal.h"
+#include "server/cage/read/numbers/decimal.h"
 
 static locale_t c_locale;
 

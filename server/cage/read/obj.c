@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "server/cage/read/decimal.h"
+#include "server/cage/read/numbers/decimal.h"
 #include "server/cage/read/obj_reader.h"
 
 bool obj_fail(const struct obj_reader *reader, const char *format, ...)

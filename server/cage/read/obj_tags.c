@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "server/cage/read/decimal.h"
+#include "server/cage/read/numbers/decimal.h"
 
 #define NO_INDEX UINT32_MAX
 

@@ -10,9 +10,9 @@
 extern "C" {
 #include "server/cage/build/builder.h"
 }
-#include "server/cage/read/gltf/gltf_container.h"
-#include "server/cage/read/gltf/transform.h"
 #include "server/cage/build/weld.h"
+#include "server/cage/read/gltf/gltf_container.h"
+#include "server/cage/read/numbers/transform.h"
 
 namespace gltf
 {

@@ -1,4 +1,4 @@
-#include "server/cage/read/decimal.h"
+#include "server/cage/read/numbers/decimal.h"
 
 #include <math.h>
 #include <stdbool.h>

@@ -1,4 +1,4 @@
-#include "server/cage/read/gltf/transform.h"
+#include "server/cage/read/numbers/transform.h"
 
 #include <math.h>
 

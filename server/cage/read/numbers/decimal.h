@@ -1,6 +1,6 @@
 /* Parses decimal numbers: correctly rounded, and independent of the locale. Pure, any thread. */
-#ifndef SHEEN_CAGE_READ_DECIMAL_H
-#define SHEEN_CAGE_READ_DECIMAL_H
+#ifndef SHEEN_CAGE_READ_NUMBERS_DECIMAL_H
+#define SHEEN_CAGE_READ_NUMBERS_DECIMAL_H
 
 #include <locale.h>
 #include <stddef.h>

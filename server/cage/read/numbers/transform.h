@@ -1,12 +1,14 @@
-/* The 4x4 matrices of glTF's nodes, in double precision. Pure, any thread. */
-#ifndef SHEEN_CAGE_READ_GLTF_TRANSFORM_H
-#define SHEEN_CAGE_READ_GLTF_TRANSFORM_H
+/* 4x4 matrices that place the parts of a file, in double precision. Pure, any thread. */
+#ifndef SHEEN_CAGE_READ_NUMBERS_TRANSFORM_H
+#define SHEEN_CAGE_READ_NUMBERS_TRANSFORM_H
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-/* Column-major, as in glTF; the last row is 0 0 0 1. */
+/* Column-major, so that a point is a column to the right of the matrix; the last row is 0 0 0 1.
+ * glTF stores it so. The numbers of USD's matrices, which are row-major for points as rows, have the
+ * same order. */
 struct transform {
     double m[16];
 };
