@@ -45,6 +45,9 @@ struct build_order {
     /* Can a result of at least `bytes` bytes ever be kept? False with *error if not. Any thread may
      * call it, while the size of the result is still being computed. */
     bool (*may_need)(void *owner, size_t bytes, struct error *error);
+    /* Makes what is reserved for the build's own work `bytes` bytes, until finished() is called; may evict
+     * other assets. On the loop's thread; 0 never fails. */
+    bool (*reserve_work)(void *owner, size_t bytes, struct error *error);
     /* Reserves `bytes` bytes until the result is destroyed; may evict other assets. Called once, on
      * the loop's thread, before the result is filled in. */
     bool (*reserve)(void *owner, size_t bytes, struct error *error);

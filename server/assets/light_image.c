@@ -4,8 +4,9 @@
 
 struct image_build {
     struct build_order order;
-    struct task task; /* decoding, later uploading */
+    struct task task; /* measuring, decoding, then uploading */
     uint32_t max_px;
+    struct image measured; /* what decoding gives at most; no pixels */
     struct light_image *image;
     bool ok;
     struct error error;
@@ -37,13 +38,25 @@ static void upload_done(struct task *task)
     end_build(build, build->image->gpu != NULL);
 }
 
+static struct workers_image file_of(const struct image_build *build)
+{
+    const struct build_order *order = &build->order;
+    return (struct workers_image){order->file, order->file_bytes, order->name, build->max_px};
+}
+
+static size_t kept_bytes(const struct image_build *build, const struct image *pixels)
+{
+    return image_bytes(pixels) +
+           renderer_image_bytes(render_thread_device(build->order.render_thread), pixels);
+}
+
 static void decode_run(struct task *task, void *context)
 {
     (void)context;
     struct image_build *build = task->owner;
-    const struct build_order *order = &build->order;
-    build->ok = workers_read_image(order->workers, &build->image->pixels, order->file,
-                                   order->file_bytes, order->name, build->max_px, &build->error);
+    const struct workers_image file = file_of(build);
+    build->ok = workers_read_image(build->order.workers, &build->image->pixels, &file,
+                                   image_bytes(&build->measured), &build->error);
 }
 
 static void decode_done(struct task *task)
@@ -51,10 +64,8 @@ static void decode_done(struct task *task)
     struct image_build *build = task->owner;
     const struct build_order *order = &build->order;
     if (build->ok) {
-        const struct image *pixels = &build->image->pixels;
-        build->image->reserved_bytes =
-            image_bytes(pixels) +
-            renderer_image_bytes(render_thread_device(order->render_thread), pixels);
+        build->image->reserved_bytes = kept_bytes(build, &build->image->pixels);
+        order->reserve_work(order->owner, 0, &build->error); /* the rest is kept */
         build->ok = order->reserve(order->owner, build->image->reserved_bytes, &build->error);
     }
     if (!build->ok) {
@@ -64,6 +75,33 @@ static void decode_done(struct task *task)
     order->progress->stage = "upload";
     build->task = (struct task){upload_run, upload_done, build, {NULL}};
     render_thread_submit(order->render_thread, &build->task);
+}
+
+static void measure_run(struct task *task, void *context)
+{
+    (void)context;
+    struct image_build *build = task->owner;
+    const struct workers_image file = file_of(build);
+    build->ok = workers_measure_image(build->order.workers, &build->measured, &file, &build->error);
+}
+
+/* While the image is decoded there are the file's copy for the worker, the worker's answer, and what is
+ * kept of it. */
+static void measure_done(struct task *task)
+{
+    struct image_build *build = task->owner;
+    const struct build_order *order = &build->order;
+    if (build->ok) {
+        const struct image *measured = &build->measured;
+        const size_t need = order->file_bytes + image_bytes(measured) + kept_bytes(build, measured);
+        build->ok = order->reserve_work(order->owner, need, &build->error);
+    }
+    if (!build->ok) {
+        end_build(build, false);
+        return;
+    }
+    build->task = (struct task){decode_run, decode_done, build, {NULL}};
+    pool_submit(order->readers, &build->task, POOL_LATER);
 }
 
 bool light_image_build_start(const struct build_order *order, struct error *error)
@@ -83,7 +121,7 @@ bool light_image_build_start(const struct build_order *order, struct error *erro
     if (build->max_px > order->max_image_px)
         build->max_px = order->max_image_px;
     order->progress->stage = "reading";
-    build->task = (struct task){decode_run, decode_done, build, {NULL}};
+    build->task = (struct task){measure_run, measure_done, build, {NULL}};
     pool_submit(order->readers, &build->task, POOL_LATER);
     return true;
 }

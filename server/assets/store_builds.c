@@ -67,26 +67,37 @@ static bool build_may_need(void *owner, size_t bytes, struct error *error)
                      bytes, store->account.limit);
 }
 
-/* Charges what building a model takes beside its file and its tables: the cage, its topology and the
- * plan of the tables. In a private daemon it is charged in any case, so that the need of the tables,
- * which is told to the client, comes on top. */
-static bool reserve_work(struct asset *asset, struct error *error)
+static bool build_reserve_work(void *owner, size_t bytes, struct error *error)
 {
-    enum { WORK_PER_FILE_BYTE = 12 };
-    struct store *store = asset->store;
-    const uint64_t bytes = (uint64_t)asset->file_bytes * WORK_PER_FILE_BYTE;
-    struct error why;
-    if (asset->kind != ASSET_MODEL)
-        return true;
-    if (store->is_private)
-        account_charge(&asset->account, ACCOUNT_INPUT, bytes);
-    else if (!build_may_need(asset, bytes, &why))
-        return error_set(error, ERROR_MODEL, "%s: %s", asset->name, why.text);
-    else if (!store_reserve(store, asset->share->id, &asset->account, ACCOUNT_INPUT, bytes,
-                            asset->name, ERROR_MODEL, error))
+    struct asset *asset = owner;
+    enum error_kind permanent = asset->kind == ASSET_MODEL ? ERROR_MODEL : ERROR_IMAGE;
+    account_refund(&asset->account, ACCOUNT_INPUT, asset->work_bytes);
+    asset->work_bytes = 0;
+    if (bytes > 0 && !store_reserve(asset->store, asset->share->id, &asset->account, ACCOUNT_INPUT,
+                                    bytes, asset->name, permanent, error))
         return false;
     asset->work_bytes = bytes;
     return true;
+}
+
+/* Charges what a build takes beside its file until it knows more: for a model the cage, its topology and the
+ * plan of the tables; for an image the file's copy for the worker. In a private daemon a model's is charged
+ * in any case, so that the need of the tables, which is told to the client, comes on top. */
+static bool reserve_work(struct asset *asset, struct error *error)
+{
+    enum { WORK_PER_FILE_BYTE = 12 };
+    const uint64_t bytes = (uint64_t)asset->file_bytes * WORK_PER_FILE_BYTE;
+    struct error why;
+    if (asset->kind == ASSET_IMAGE)
+        return build_reserve_work(asset, asset->file_bytes, error);
+    if (asset->store->is_private) {
+        account_charge(&asset->account, ACCOUNT_INPUT, bytes);
+        asset->work_bytes = bytes;
+        return true;
+    }
+    if (!build_may_need(asset, bytes, &why))
+        return error_set(error, ERROR_MODEL, "%s: %s", asset->name, why.text);
+    return build_reserve_work(asset, bytes, error);
 }
 
 /* Has the client that asked for this build another one running? */
@@ -132,6 +143,7 @@ static void start_builds(struct store *store)
             .tables_cpu_us = store->limits->tables_cpu_s * 1000000,
             .cancelled = &store->cancelled,
             .may_need = build_may_need,
+            .reserve_work = build_reserve_work,
             .reserve = build_reserve,
             .finished = build_finished,
             .owner = asset,

@@ -263,23 +263,52 @@ bool read_pixels(struct image *image, OIIO::ImageInput &reader, const OIIO::Imag
     return false;
 }
 
-bool decode(struct image *image, const void *bytes, size_t size, const char *name, uint32_t max_px,
-            struct error *error)
+// A file whose format is known, opened by its reader.
+struct opened_file {
+    OIIO::Filesystem::IOMemReader proxy; // outlives the reader
+    std::unique_ptr<OIIO::ImageInput> reader;
+    OIIO::ImageSpec spec;
+    opened_file(const void *bytes, size_t size) : proxy(bytes, size)
+    {
+    }
+};
+
+bool open_file(opened_file &opened, std::string_view file, const char *name, uint32_t max_px,
+               struct error *error)
 {
-    if (size == 0)
+    if (file.empty())
         return error_set(error, ERROR_IMAGE, "%s: not an image: the file is empty", name);
-    std::string_view file(static_cast<const char *>(bytes), size);
     const char *format = format_of(file);
     if (!format)
         return error_set(error, ERROR_IMAGE,
                          "%s: it is not an image format that is read: " IMAGE_READ_FORMATS, name);
     if (!std::strcmp(format, "jpeg") && is_cut_jpeg(file))
         return error_set(error, ERROR_IMAGE, "%s: the jpeg file is cut off", name);
-    OIIO::Filesystem::IOMemReader proxy(bytes, size);
-    std::unique_ptr<OIIO::ImageInput> reader;
-    OIIO::ImageSpec spec;
-    return open_reader(reader, proxy, spec, format, name, error) &&
-           check_spec(spec, name, max_px, error) && read_pixels(image, *reader, spec, name, error);
+    return open_reader(opened.reader, opened.proxy, opened.spec, format, name, error) &&
+           check_spec(opened.spec, name, max_px, error);
+}
+
+bool decode(struct image *image, const void *bytes, size_t size, const char *name, uint32_t max_px,
+            struct error *error)
+{
+    opened_file opened(bytes, size);
+    return open_file(opened, {static_cast<const char *>(bytes), size}, name, max_px, error) &&
+           read_pixels(image, *opened.reader, opened.spec, name, error);
+}
+
+bool measure(struct image *image, const void *bytes, size_t size, const char *name, uint32_t max_px,
+             struct error *error)
+{
+    opened_file opened(bytes, size);
+    if (!open_file(opened, {static_cast<const char *>(bytes), size}, name, max_px, error))
+        return false;
+    const OIIO::ImageSpec &spec = opened.spec;
+    const bool may_be_transparent = spec.nchannels == 2 || spec.nchannels >= 4;
+    *image = {static_cast<uint32_t>(spec.width), static_cast<uint32_t>(spec.height),
+              spec.format != OIIO::TypeDesc::UINT8 || may_be_transparent, nullptr};
+    if (spec.format == OIIO::TypeDesc::UINT8 && image_bytes(image) > IMAGE_MAX_BYTES)
+        image->is_float = false; // it is refused if it is transparent
+    return true;
 }
 
 // --- encoding
@@ -512,6 +541,13 @@ extern "C" bool image_decode(struct image *image, const void *bytes, size_t size
 {
     *image = {};
     return guarded(name, error, [&] { return decode(image, bytes, size, name, max_px, error); });
+}
+
+extern "C" bool image_measure(struct image *size, const void *bytes, size_t n_bytes,
+                              const char *name, uint32_t max_px, struct error *error)
+{
+    *size = {};
+    return guarded(name, error, [&] { return measure(size, bytes, n_bytes, name, max_px, error); });
 }
 
 extern "C" void image_use_one_thread(void)

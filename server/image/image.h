@@ -37,6 +37,11 @@ bool image_decode(struct image *image, const void *bytes, size_t size, const cha
                   uint32_t max_px, struct error *error);
 void image_finish(struct image *image);
 
+/* What image_decode() would give at most, from the first bytes of the file: the sides, and is_float where
+ * pixels may become floats. size->pixels is NULL. The same errors, as far as the first bytes show them. */
+bool image_measure(struct image *size, const void *bytes, size_t n_bytes, const char *name,
+                   uint32_t max_px, struct error *error);
+
 /* Checks what must hold for a decoded image: sides from 1 to max_px, at most IMAGE_MAX_BYTES,
  * pixels present and finite. False with ERROR_IMAGE and `name`. */
 bool image_check(const struct image *image, const char *name, uint32_t max_px, struct error *error);

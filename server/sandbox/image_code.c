@@ -5,26 +5,47 @@
 
 /* --- images */
 
+void image_size_write(struct sink *sink, const struct image *size)
+{
+    sink_u32(sink, size->width_px);
+    sink_u32(sink, size->height_px);
+    sink_u32(sink, size->is_float);
+}
+
 void image_write(struct sink *sink, const struct image *image)
 {
-    sink_u32(sink, image->width_px);
-    sink_u32(sink, image->height_px);
-    sink_u32(sink, image->is_float);
+    image_size_write(sink, image);
     sink_bytes(sink, image->pixels, image_bytes(image));
+}
+
+/* The sides may be 0, but are so small that image_bytes() cannot overflow. */
+static bool take_size(struct source *source, struct image *taken)
+{
+    *taken = (struct image){0};
+    taken->width_px = source_u32(source);
+    taken->height_px = source_u32(source);
+    const uint32_t is_float = source_u32(source);
+    taken->is_float = is_float != 0;
+    return source->ok && is_float <= 1 && taken->width_px <= IMAGE_MAX_PX &&
+           taken->height_px <= IMAGE_MAX_PX;
+}
+
+bool image_size_take(struct source *source, struct image *size, const char *name, uint32_t max_px,
+                     struct error *error)
+{
+    return (take_size(source, size) && source->left == 0 && size->width_px > 0 &&
+            size->height_px > 0 && size->width_px <= max_px && size->height_px <= max_px &&
+            image_bytes(size) <= IMAGE_MAX_BYTES) ||
+           error_set(error, ERROR_IMAGE, "%s: the process that measured it handed back no size",
+                     name);
 }
 
 bool image_take(struct source *source, struct image *image, const char *name, uint32_t max_px,
                 struct error *error)
 {
-    struct image taken = {0};
-    taken.width_px = source_u32(source);
-    taken.height_px = source_u32(source);
-    const uint32_t is_float = source_u32(source);
+    struct image taken;
     *image = (struct image){0};
-    taken.is_float = is_float != 0;
-    /* Check the sides first: only then image_bytes() cannot overflow. */
-    if (!source->ok || is_float > 1 || taken.width_px > IMAGE_MAX_PX ||
-        taken.height_px > IMAGE_MAX_PX || source->left != image_bytes(&taken))
+    if (!take_size(source, &taken) || source->left != image_bytes(&taken))
         return error_set(error, ERROR_IMAGE, "%s: the process that read it handed back no image",
                          name);
     const size_t size = source->left;

@@ -9,6 +9,11 @@
 /* A decoded image. image_take() copies the pixels and checks them by image_check(); max_px is the
  * largest side. On success the caller owns the image. On failure *image is empty; ERROR_IMAGE, or
  * ERROR_SERVER when memory is short. `name` is the file's name for the error. */
+/* The size of an image without its pixels, before them. image_size_take() checks that sides are from 1 to
+ * max_px and that pixels take at most IMAGE_MAX_BYTES. */
+void image_size_write(struct sink *sink, const struct image *size);
+bool image_size_take(struct source *source, struct image *size, const char *name, uint32_t max_px,
+                     struct error *error);
 void image_write(struct sink *sink, const struct image *image);
 bool image_take(struct source *source, struct image *image, const char *name, uint32_t max_px,
                 struct error *error);

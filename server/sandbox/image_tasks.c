@@ -23,6 +23,24 @@ static void read_image(struct source *input, struct sink *answer)
     image_finish(&image);
 }
 
+static void measure_image(struct source *input, struct sink *answer)
+{
+    const uint32_t max_px = source_u32(input);
+    const char *name;
+    size_t size;
+    const void *file = job_take_file(input, &name, &size);
+    struct error error = {0};
+    struct image image;
+    if (!file)
+        error_set(&error, ERROR_SERVER, "there is no file in this job");
+    if (!file || !image_measure(&image, file, size, name, max_px, &error)) {
+        answer_write_error(answer, &error);
+        return;
+    }
+    answer_write_ok(answer);
+    image_size_write(answer, &image);
+}
+
 static void write_image(struct source *input, struct sink *answer)
 {
     struct picture picture;
@@ -44,6 +62,7 @@ static void write_image(struct source *input, struct sink *answer)
 }
 
 const struct zygote_task image_tasks[N_JOB_KINDS] = {
+    [JOB_MEASURE_IMAGE] = {measure_image},
     [JOB_READ_IMAGE] = {read_image},
     [JOB_WRITE_IMAGE] = {write_image},
 };

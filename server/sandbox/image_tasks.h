@@ -6,8 +6,8 @@
 
 /* The input of each job:
  *
- * JOB_READ_IMAGE   the largest side allowed (px), then a file
- * JOB_WRITE_IMAGE  a picture */
+ * JOB_MEASURE_IMAGE, JOB_READ_IMAGE  the largest side allowed (px), then a file
+ * JOB_WRITE_IMAGE                    a picture */
 extern const struct zygote_task image_tasks[N_JOB_KINDS];
 
 #endif

@@ -15,9 +15,10 @@
 #include "server/sandbox/stream.h"
 
 enum job_kind {
-    JOB_READ_CAGE,   /* a file to a cage */
-    JOB_READ_IMAGE,  /* a file to pixels */
-    JOB_WRITE_IMAGE, /* planes to a file */
+    JOB_READ_CAGE,     /* a file to a cage */
+    JOB_MEASURE_IMAGE, /* a file to the size of its pixels */
+    JOB_READ_IMAGE,    /* a file to pixels */
+    JOB_WRITE_IMAGE,   /* planes to a file */
     N_JOB_KINDS,
 };
 

@@ -179,20 +179,40 @@ bool workers_read_cage(struct workers *workers, struct cage *cage, const void *b
     return ok;
 }
 
-bool workers_read_image(struct workers *workers, struct image *image, const void *bytes,
-                        size_t size, const char *name, uint32_t max_px, struct error *error)
+/* Runs a job that reads an image file. Call end_job() in any case. */
+static bool run_image_job(struct workers *workers, struct worker_call *call, enum job_kind kind,
+                          const struct job_limits *limits, const struct workers_image *file,
+                          struct error *error)
+{
+    if (!begin_job(workers, call, NULL, error))
+        return false;
+    sink_u32(&call->input, file->max_px);
+    job_write_file(&call->input, file->name, file->bytes, file->n_bytes);
+    return worker_run(workers->images, call, kind, limits, file->name, ERROR_IMAGE, error);
+}
+
+bool workers_measure_image(struct workers *workers, struct image *size,
+                           const struct workers_image *file, struct error *error)
 {
     const struct job_limits limits = limits_within_budget(workers, WORKERS_IMAGE_MEMORY_BYTES);
     struct worker_call call;
+    *size = (struct image){0};
+    bool ok = run_image_job(workers, &call, JOB_MEASURE_IMAGE, &limits, file, error) &&
+              image_size_take(&call.answer, size, file->name, file->max_px, error);
+    end_job(workers, &call);
+    return ok;
+}
+
+bool workers_read_image(struct workers *workers, struct image *image,
+                        const struct workers_image *file, uint64_t max_bytes, struct error *error)
+{
+    enum { BESIDE_PIXELS = 4096 }; /* the status and the sides */
+    struct job_limits limits = limits_within_budget(workers, WORKERS_IMAGE_MEMORY_BYTES);
+    limits.answer_bytes = least(limits.answer_bytes, max_bytes + BESIDE_PIXELS);
+    struct worker_call call;
     *image = (struct image){0};
-    bool ok = begin_job(workers, &call, NULL, error);
-    if (ok) {
-        sink_u32(&call.input, max_px);
-        job_write_file(&call.input, name, bytes, size);
-    }
-    ok = ok &&
-         worker_run(workers->images, &call, JOB_READ_IMAGE, &limits, name, ERROR_IMAGE, error) &&
-         image_take(&call.answer, image, name, max_px, error);
+    bool ok = run_image_job(workers, &call, JOB_READ_IMAGE, &limits, file, error) &&
+              image_take(&call.answer, image, file->name, file->max_px, error);
     end_job(workers, &call);
     return ok;
 }

@@ -60,9 +60,19 @@ void workers_stop(struct workers *workers);
 /* cage_read() in a worker. */
 bool workers_read_cage(struct workers *workers, struct cage *cage, const void *bytes, size_t size,
                        const char *name, struct error *error);
-/* image_decode() in a worker. */
-bool workers_read_image(struct workers *workers, struct image *image, const void *bytes,
-                        size_t size, const char *name, uint32_t max_px, struct error *error);
+/* An image file for a worker. max_px: the largest side that is taken. */
+struct workers_image {
+    const void *bytes;
+    size_t n_bytes;
+    const char *name;
+    uint32_t max_px;
+};
+/* image_measure() in a worker. */
+bool workers_measure_image(struct workers *workers, struct image *size,
+                           const struct workers_image *file, struct error *error);
+/* image_decode() in a worker, which cannot hand back more than max_bytes bytes of pixels. */
+bool workers_read_image(struct workers *workers, struct image *image,
+                        const struct workers_image *file, uint64_t max_bytes, struct error *error);
 /* image_encode() in a worker. The picture's channels lie in the blocks. *bytes is from
  * `block_cache` and owned by the caller. */
 bool workers_write_image(struct workers *workers, const struct picture *picture,

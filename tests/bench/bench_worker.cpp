@@ -93,6 +93,7 @@ void measure_least(report *report, workers *workers)
     static const std::string obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
     static const std::string ppm = "P6\n1 1\n255\nabc";
     error error = {};
+    const workers_image file = {ppm.data(), ppm.size(), "a.ppm", 16384};
     pair_of_samples pair = measure_pairs(
         5 * report->given().runs,
         [&](int) {
@@ -106,9 +107,7 @@ void measure_least(report *report, workers *workers)
         [&](int) {
             return time_ms([&] {
                 image image;
-                check(workers_read_image(workers, &image, ppm.data(), ppm.size(), "a.ppm", 16384,
-                                         &error),
-                      error);
+                check(workers_read_image(workers, &image, &file, IMAGE_MAX_BYTES, &error), error);
                 image_finish(&image);
             });
         });

@@ -32,9 +32,21 @@ static void try_cage(struct source *source)
     cage_finish(&cage);
 }
 
+static void try_image_size(struct source source)
+{
+    struct error error = {0};
+    struct image size;
+    if (image_size_take(&source, &size, "fuzz", MAX_PX, &error))
+        MUST(size.width_px > 0 && size.width_px <= MAX_PX && size.height_px > 0 &&
+             size.height_px <= MAX_PX && image_bytes(&size) <= IMAGE_MAX_BYTES);
+    else
+        MUST(error.kind == ERROR_IMAGE);
+}
+
 static void try_image(struct source *source)
 {
     struct error error = {0};
+    try_image_size(*source);
     struct image image;
     const size_t had = source->left;
     if (image_take(source, &image, "fuzz", MAX_PX, &error)) {

@@ -1,8 +1,11 @@
 """--memory-budget bounds what the daemon takes: a mixed load at small budgets, and its resident memory meanwhile."""
 import random
+import re
+import struct
 import threading
 import time
 import unittest
+import zlib
 
 import wire
 from daemon import CUBE, DAEMON_MIB, SANITIZED, Daemon, budget, grid, resident_kb
@@ -16,6 +19,15 @@ ENCODINGS = (wire.RAW, wire.ZSTD, wire.PNG, wire.JPEG)
 
 def ppm(side):
     return f"P6\n{side} {side}\n255\n".encode() + bytes(range(256)) * (side * side * 3 // 256) + bytes(side * side * 3 % 256)
+
+
+def png(side):
+    """A black square, RGB of 8 bits."""
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+    header = struct.pack(">IIBBBBB", side, side, 8, 2, 0, 0, 0)
+    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(bytes(side * (1 + 3 * side)))) +
+            chunk(b"IEND", b""))
 
 
 class Resident(unittest.TestCase):
@@ -59,6 +71,31 @@ class Resident(unittest.TestCase):
             for kind, data in got:
                 self.assertEqual(pictures.setdefault(kind, data), data)
             self.assertEqual(daemon.stop(), 0)
+
+    def test_an_image_is_refused_before_it_is_decoded(self):
+        """A small file of many pixels: they have no room twice, as the worker's answer and as what the daemon keeps."""
+        daemon = Daemon("--memory-budget", budget(64), tcp=False)
+        most_kb = (DAEMON_MIB + 64) * 1024 * 1.15
+        with Client(daemon.unix) as client:
+            model = client.upload(CUBE, "cube.obj")
+            client.render(model)
+            for side, taken in (500, True), (3500, False):  # 3500 x 3500 RGB: 49 MB
+                image = client.upload(png(side), "wide.png", wire.IMAGE)
+                if taken:
+                    client.render(model, extra=image_pattern(image))
+                    continue
+                with self.assertRaises(wire.Refused) as caught:
+                    client.render(model, extra=image_pattern(image))
+                self.assertEqual(caught.exception.code, wire.ERROR_IMAGE)
+                self.assertRegex(caught.exception.text,
+                                 rf"^wide.png needs \d+ bytes .* memory budget has {64 << 20} for it")
+                need = int(re.search(r"needs (\d+)", caught.exception.text).group(1))
+                self.assertGreaterEqual(need, 2 * 4 * side * side)
+            with open(f"/proc/{daemon.process.pid}/status", encoding="ascii") as status:
+                peak_kb = int(re.search(r"VmHWM:\s*(\d+)", status.read()).group(1))
+            self.assertLess(0 if SANITIZED else peak_kb, most_kb)
+            self.assertLess(client.stats()[62][0], 1 << 20)  # nothing stays reserved for the work
+        self.assertEqual(daemon.stop(), 0)
 
     @unittest.skipIf(SANITIZED, "sanitizers hoard memory")
     def test_stays_within_the_budget(self):

@@ -151,10 +151,16 @@ static void test_lossless_round_trip(void **state)
         uint8_t *bytes = encoders[f](&size);
         struct image image;
         struct error error = {0};
-        if (!image_decode(&image, bytes, size, "no-ending", 16384, &error))
+        struct image measured;
+        if (!image_measure(&measured, bytes, size, "no-ending", 16384, &error) ||
+            !image_decode(&image, bytes, size, "no-ending", 16384, &error))
             fail_msg("%s", error.text);
-        assert_int_equal(image.width_px, WIDTH);
-        assert_int_equal(image.height_px, HEIGHT);
+        assert_null(measured.pixels);
+        assert_true(image.width_px == WIDTH && image.height_px == HEIGHT);
+        assert_true(measured.width_px == WIDTH && measured.height_px == HEIGHT);
+        assert_true(measured.is_float && image.is_float); /* transparent */
+        assert_false(image_measure(&measured, bytes, size, "wide", WIDTH - 1, &error));
+        assert_true(contains((uint8_t *)error.text, strlen(error.text), "wide: ", 6));
         expect_light(&image, p->colour[0], 1e-6);
         assert_true(contains(bytes, size, "1.2.3", 5));
         assert_true(contains(bytes, size, "sheen:camera", 12));
