@@ -259,6 +259,18 @@ TEST_LIB := $(BUILD)/libtests.a
 # only (-g1): a link leaves their debug information out, and writing all of it takes a quarter of the compiler's time.
 TEST_LINK := $(if $(FUZZ)$(SANITIZE)$(COVERAGE),,-fuse-ld=gold -Wl,--strip-debug)
 $(BUILD)/obj/tests/%.o: BASE += $(if $(TEST_LINK),-g1)
+# With g++ alone the headers of tests/standard.hpp are compiled once; ccache would then keep nothing.
+STANDARD := $(if $(filter g++,$(CXX)),$(if $(filter ccache,$(CXX))$(FUZZ)$(SANITIZE)$(COVERAGE),,$(BUILD)/obj/tests/standard.hpp.gch))
+ifneq ($(STANDARD),)
+$(STANDARD): BASE += $(if $(TEST_LINK),-g1)
+$(STANDARD): tests/standard.hpp
+	@mkdir -p $(@D)
+	$(call say,CXX $<)
+	$(Q)$(CXX) $(CXXFLAGS) -x c++-header -o $@ $<
+USE_STANDARD := $(call obj,$(filter-out tests/bench/embree.cpp,$(wildcard tests/oracle/*.cpp tests/bench/*.cpp)))
+$(USE_STANDARD): $(STANDARD)
+$(USE_STANDARD): private CXXFLAGS += -I$(BUILD)/obj/tests -include standard.hpp -Winvalid-pch
+endif
 $(TEST_LIB): $(LIB_OBJ)
 	$(Q)rm -f $@ && ar rcsP $@ $^
 
@@ -327,8 +339,8 @@ $(BENCH): $(BUILD)/tests/%: $(BUILD)/obj/tests/bench/%.cpp.o $(BENCH_MAIN) $(ORA
 	$(call say,LD $@)
 	$(Q)$(CXX) $(LDFLAGS) $(TEST_LINK) -o $@ $(filter %.o,$^) $(TEST_LIB) $(BENCH_LIBS)
 
-# The benchmarks of the renderer without peers, for a machine that has only EGL and libepoxy. The C++ runtime is
-# linked statically.
+# The benchmarks of the renderer without peers, for a machine that has only EGL and libepoxy. The C++ runtime and
+# jansson are linked statically.
 SHEEN_BENCH_OBJ := $(call obj,$(patsubst %,tests/bench/bench_%.cpp,closeup frame light paper size tables)) \
                    $(BENCH_MAIN) \
                    $(call obj,tests/bench/no_peers.cpp tests/bench/no_gltf.c) \
@@ -337,7 +349,7 @@ SHEEN_BENCH_OBJ := $(call obj,$(patsubst %,tests/bench/bench_%.cpp,closeup frame
                    $(KEEP_MODULES)
 $(BUILD)/sheen-bench: $(SHEEN_BENCH_OBJ)
 	$(call say,LD $@)
-	$(Q)$(CXX) $(LDFLAGS) -static-libstdc++ -static-libgcc -o $@ $^ -lepoxy -lm
+	$(Q)$(CXX) $(LDFLAGS) -static-libstdc++ -static-libgcc -o $@ $^ -Wl,-Bstatic -ljansson -Wl,-Bdynamic -lepoxy -lm
 sheen-bench: $(BUILD)/sheen-bench
 
 # The native device for another processor is compiled and not linked, because the other libraries are this machine's.

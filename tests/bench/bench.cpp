@@ -8,31 +8,43 @@
 #include <ctime>
 #include <exception>
 #include <filesystem>
-#include <fstream>
+#include <memory>
 #include <stdexcept>
 
-#include <nlohmann/json.hpp>
+#include <jansson.h>
 
 namespace
 {
 
-/* The numbers of an earlier run's file; empty if there is no such file. */
-nlohmann::json read_figures(const std::string &path)
-{
-    nlohmann::json numbers = nlohmann::json::object();
-    std::ifstream file(path);
-    if (!file)
-        return numbers;
-    nlohmann::json old = nlohmann::json::parse(file, nullptr, false);
-    if (!old.is_object() || !old.contains("figures") || !old["figures"].is_object()) {
-        std::printf("%s holds no figures to compare with\n", path.c_str());
-        return numbers;
+struct json_deleter {
+    void operator()(json_t *json) const
+    {
+        json_decref(json);
     }
-    for (const auto &[key, value] : old["figures"].items())
-        if (value.is_number())
-            numbers[key] = value;
+};
+using json_owner = std::unique_ptr<json_t, json_deleter>;
+
+/* Takes the reference `value`. */
+void put(const json_owner &object, const std::string &key, json_t *value)
+{
+    if (json_object_set_new(object.get(), key.c_str(), value))
+        throw std::runtime_error(key + ": cannot be written as JSON");
+}
+
+/* The "figures" of an earlier run's file; empty if there is no such file. */
+json_owner read_figures(const std::string &path)
+{
+    json_owner none(json_object());
+    if (!std::filesystem::exists(path))
+        return none;
+    json_owner old(json_load_file(path.c_str(), 0, nullptr));
+    json_t *figures = json_object_get(old.get(), "figures");
+    if (!json_is_object(figures)) {
+        std::printf("%s holds no figures to compare with\n", path.c_str());
+        return none;
+    }
     std::printf("against %s:\n", path.c_str());
-    return numbers;
+    return json_owner(json_incref(figures));
 }
 
 int positive(const std::string &option, const std::string &value)
@@ -203,29 +215,30 @@ void report::note(const std::string &key, const std::string &value)
 void report::finish() const
 {
     std::filesystem::path path = std::filesystem::path(asked.folder) / (name + ".json");
-    nlohmann::json old = read_figures(asked.compare.empty() ? path.string() : asked.compare);
-    nlohmann::ordered_json json;
+    json_owner old = read_figures(asked.compare.empty() ? path.string() : asked.compare);
+    json_owner json(json_object()), now_figures(json_object()), before(json_object());
     char date[32];
     std::time_t now = std::time(nullptr);
     std::strftime(date, sizeof date, "%Y-%m-%dT%H:%M:%SZ", std::gmtime(&now));
-    json["date"] = date;
+    put(json, "date", json_string(date));
     for (const auto &[key, value] : notes)
-        json[key] = value;
+        put(json, key, json_string(value.c_str()));
     table table({"figure", "then", "now", "now/then"});
     for (const auto &[key, value] : figures) {
-        json["figures"][key] = value;
-        double then = old.contains(key) ? old[key].get<double>() : 0;
+        put(now_figures, key, std::isfinite(value) ? json_real(value) : json_null());
+        double then = json_number_value(json_object_get(old.get(), key.c_str()));
         if (then == 0)
             continue;
-        json["before"][key] = then;
+        put(before, key, json_real(then));
         table.row({key, number(then, 3), number(value, 3), number(value / then, 2)});
     }
-    if (json.contains("before"))
+    put(json, "figures", now_figures.release());
+    if (json_object_size(before.get())) {
         table.print();
+        put(json, "before", before.release());
+    }
     std::filesystem::create_directories(asked.folder);
-    std::ofstream file(path);
-    file << json.dump(1) << "\n";
-    if (!file.flush())
+    if (json_dump_file(json.get(), path.c_str(), JSON_INDENT(1)))
         throw std::runtime_error(path.string() + ": cannot be written");
     std::printf("written: %s\n\n", path.c_str());
 }
