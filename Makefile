@@ -77,7 +77,7 @@ Q := $(if $(V),,@)
 say = $(if $(V),,@echo '  $(1)')
 
 obj = $(patsubst %,$(BUILD)/obj/%.o,$(1))
-PROTOCOL_SRC := $(wildcard protocol/*.c)
+PROTOCOL_SRC := $(wildcard protocol/*.c protocol/messages/*.c)
 CAGE_SRC := $(wildcard server/cage/*.c)
 CAGE_READ_SRC := $(wildcard server/cage/build/*.c server/cage/read/*.c server/cage/read/*/*.c server/cage/read/gltf/*.cpp)
 SURFACE_SRC := $(wildcard server/surface/*.c server/surface/topology/*.c server/surface/subdivision/*.c)

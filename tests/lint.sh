@@ -42,10 +42,11 @@ $found"
 }
 common='server/base'
 room protocol '' 'both sides speak by it'
+room protocol/messages 'protocol' 'what is said comes after how it is sent'
 room client/lib/sheen '' 'it is installed, without other files'
-room client/lib 'protocol|sheen' 'a client needs nothing of the daemon'
+room client/lib 'protocol|protocol/messages|sheen' 'a client needs nothing of the daemon'
 room client/lib/files 'client/lib|protocol' 'reading files for uploads needs no session'
-room client/lib/numbers 'client/lib|protocol' 'requests of computed numbers are made of what requests of frames are made of'
+room client/lib/numbers 'client/lib|protocol|protocol/messages' 'requests of computed numbers are made of what requests of frames are made of'
 room client/cli/base 'client/lib|protocol' 'every part of the command knows it'
 room client/cli/files 'client/lib|client/cli/base|protocol' 'files as they are sent, without options and sessions'
 room client/cli/options 'client/lib|protocol' 'the command line is data'
@@ -66,7 +67,7 @@ room server/surface/topology "$common|server/cage" 'connectivity is of the cage,
 room server/surface/subdivision "$common|server/cage|server/surface|server/surface/topology" 'builders of one kind of surface'
 room server/image "$common|protocol" 'pictures are data'
 room server/sandbox "$common|server/cage|server/cage/read|server/image" 'the worker programs see files alone'
-room server/scene "$common|protocol|server/cage|server/surface" 'a request is data'
+room server/scene "$common|protocol|protocol/messages|server/cage|server/surface" 'a request is data'
 room server/curves "$common|server/scene|server/surface" 'numbers on surfaces: no cage, no device, no client'
 room server/curves/fields "$common|server/curves|server/scene|server/surface" 'lines as polynomials'
 for kind in breaks compare lines; do
@@ -91,13 +92,13 @@ room server/render/native/lanes "$common|server/surface|server/render|server/ren
 room server/net "$common|protocol" 'connections do not know what is said over them'
 room server/threads "$common|server/cage|server/image|server/net|server/render|server/sandbox" \
     'threads run what others give them'
-room server/output "$common|protocol|server/image|server/render|server/scene|server/threads" \
+room server/output "$common|protocol|protocol/messages|server/image|server/render|server/scene|server/threads" \
     'an encoder knows pictures, no client'
-room server/assets "$common|protocol|server/cage|server/net|server/render|server/scene|server/surface|server/surface/subdivision|server/threads" \
+room server/assets "$common|protocol|protocol/messages|server/cage|server/net|server/render|server/scene|server/surface|server/surface/subdivision|server/threads" \
     'models and images serve every frame, and know none'
-room server/frame "$common|protocol|server/assets|server/curves|server/curves/breaks|server/curves/compare|server/curves/fields|server/curves/lines|server/output|server/scene" \
+room server/frame "$common|protocol|protocol/messages|server/assets|server/curves|server/curves/breaks|server/curves/compare|server/curves/fields|server/curves/lines|server/output|server/scene" \
     'a frame tells its session by events (request.h), so it includes none'
-room server/session "$common|protocol|server/assets|server/frame|server/net|server/output|server/threads" \
+room server/session "$common|protocol|protocol/messages|server/assets|server/frame|server/net|server/output|server/threads" \
     'a session is one client'"'"'s messages; the main service hands it what it needs'
 room server/ops "$common|protocol|server/assets|server/frame|server/net|server/output|server/render/gl|server/render/native|server/sandbox|server/session|server/threads" \
     'the daemon as a whole: nobody includes it'
@@ -118,7 +119,7 @@ no_include server/scene 'server/surface/(bicubic|texels|patch|evaluate|bound)' '
 no_include server/assets 'server/surface/(bicubic|texels|patch|evaluate|bound|node|subdivision/[^b])' 'models are built and kept, not looked into'
 no_include server/threads 'server/sandbox/([a-z]*_tasks|sandbox)\.h' 'what parses files from strangers is for the workers alone'
 no_include client/cli 'client/lib/([^s]|s[^h])' 'of libsheen the command knows sheen.h alone'
-no_include client/cli 'protocol/(address|codec|frame|message|tls)\.' 'of the protocol the command knows no byte: libsheen says it'
+no_include client/cli 'protocol/(address|codec|frame|tls)\.' 'of the protocol the command knows no byte: libsheen says it'
 only_in '\bgl[A-Z][A-Za-z0-9]*\(|epoxy' 'GL' 'server client protocol' server/render/gl/
 only_in '\b(socket|bind|listen|accept4?|connect|send|sendto|sendmsg|recv|recvfrom|recvmsg|setsockopt|socketpair)\(' \
     'socket calls' 'server client protocol' server/net/ server/ops/notify.c server/threads/starter.c server/threads/worker.c server/sandbox/pass.c client/lib/connection.c client/lib/private_daemon.c

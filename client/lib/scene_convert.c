@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "protocol/message_values.h"
+#include "protocol/messages/message_values.h"
 
 _Static_assert((int)SHEEN_PATTERN_IMAGE == (int)sheen_PatternKind_PATTERN_IMAGE, "same order");
 _Static_assert((int)SHEEN_PATTERN_DISTANCE == (int)sheen_PatternKind_PATTERN_DISTANCE,

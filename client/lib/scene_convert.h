@@ -4,7 +4,7 @@
 #define SHEEN_CLIENT_SCENE_CONVERT_H
 
 #include "client/lib/sheen.h"
-#include "protocol/message.h"
+#include "protocol/messages/message.h"
 
 /* Fills in the whole message. If a pattern has more lines than a message can carry, the rest is
  * dropped, and message_check_render() refuses the message by its number of lines. */

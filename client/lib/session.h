@@ -10,7 +10,7 @@
 #include "client/lib/private_daemon.h"
 #include "client/lib/sheen.h"
 #include "protocol/codec.h"
-#include "protocol/message.h"
+#include "protocol/messages/message.h"
 
 /* A request in flight: its frame has not been received yet. */
 struct session_pending {

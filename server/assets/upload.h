@@ -3,7 +3,7 @@
 #ifndef SHEEN_ASSETS_UPLOAD_H
 #define SHEEN_ASSETS_UPLOAD_H
 
-#include "protocol/message.h"
+#include "protocol/messages/message.h"
 #include "server/assets/memory.h"
 
 struct upload;

@@ -2,7 +2,7 @@
 #ifndef SHEEN_FRAME_COMPUTE_ASKED_H
 #define SHEEN_FRAME_COMPUTE_ASKED_H
 
-#include "protocol/message.h"
+#include "protocol/messages/message.h"
 
 union compute_asked {
     sheen_FindBreaks find_breaks;

@@ -6,7 +6,7 @@
 #ifndef SHEEN_FRAME_CUT_H
 #define SHEEN_FRAME_CUT_H
 
-#include "protocol/message.h"
+#include "protocol/messages/message.h"
 
 struct cut {
     uint64_t tile_px; /* most pixels of one tile; 0: the frame is drawn whole */

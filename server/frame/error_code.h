@@ -2,7 +2,7 @@
 #ifndef SHEEN_FRAME_ERROR_CODE_H
 #define SHEEN_FRAME_ERROR_CODE_H
 
-#include "protocol/message.h"
+#include "protocol/messages/message.h"
 #include "server/base/error.h"
 
 sheen_ErrorCode error_code_of(enum error_kind kind);

@@ -6,7 +6,7 @@
 
 #include <sys/queue.h>
 
-#include "protocol/message.h"
+#include "protocol/messages/message.h"
 #include "server/assets/memory.h"
 #include "server/frame/costs.h"
 #include "server/frame/parties.h"

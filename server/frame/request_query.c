@@ -2,7 +2,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "protocol/message_values.h"
+#include "protocol/messages/message_values.h"
 #include "server/assets/model_file.h"
 #include "server/frame/request_internal.h"
 #include "server/scene/scene_convert.h"

@@ -1,7 +1,7 @@
 /* How a frame that has been drawn is encoded, held back and answered. */
 #include <stdio.h>
 
-#include "protocol/message_values.h"
+#include "protocol/messages/message_values.h"
 #include "server/base/clock.h"
 #include "server/frame/request.h"
 #include "server/frame/request_internal.h"

@@ -6,7 +6,7 @@
 #define SHEEN_OUTPUT_ENCODE_H
 
 #include "protocol/codec.h"
-#include "protocol/message.h"
+#include "protocol/messages/message.h"
 #include "server/scene/frame.h"
 #include "server/output/jpeg.h"
 #include "server/threads/pool.h"

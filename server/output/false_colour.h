@@ -14,7 +14,7 @@
 #ifndef SHEEN_OUTPUT_FALSE_COLOUR_H
 #define SHEEN_OUTPUT_FALSE_COLOUR_H
 
-#include "protocol/message.h"
+#include "protocol/messages/message.h"
 #include "server/scene/frame.h"
 
 /* The least and the greatest value among the pixels whose centre has a value. */

@@ -3,7 +3,7 @@
 #ifndef SHEEN_OUTPUT_METADATA_H
 #define SHEEN_OUTPUT_METADATA_H
 
-#include "protocol/message.h"
+#include "protocol/messages/message.h"
 #include "server/render/renderer.h"
 #include "server/image/image.h"
 

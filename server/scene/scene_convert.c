@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "protocol/message_values.h"
+#include "protocol/messages/message_values.h"
 #include "server/scene/defaults.h"
 
 _Static_assert((int)PLANE_COLOUR == (int)sheen_Plane_PLANE_COLOUR &&

@@ -4,7 +4,7 @@
 #ifndef SHEEN_SCENE_SCENE_CONVERT_H
 #define SHEEN_SCENE_SCENE_CONVERT_H
 
-#include "protocol/message.h"
+#include "protocol/messages/message.h"
 #include "server/cage/cage.h"
 #include "server/scene/frame_request.h"
 #include "server/surface/tables.h"

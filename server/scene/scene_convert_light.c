@@ -1,7 +1,7 @@
 /* Converts line families, lights and patterns between messages and the renderer's structs. */
 #include <string.h>
 
-#include "protocol/message_values.h"
+#include "protocol/messages/message_values.h"
 #include "server/scene/scene_convert.h"
 #include "server/scene/defaults.h"
 

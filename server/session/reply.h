@@ -8,7 +8,7 @@
 
 #include <sys/queue.h>
 
-#include "protocol/message.h"
+#include "protocol/messages/message.h"
 #include "server/net/conn.h"
 #include "server/output/encode.h"
 #include "server/frame/scheduler.h"

@@ -6,7 +6,7 @@
 
 #include <sys/queue.h>
 
-#include "protocol/message.h"
+#include "protocol/messages/message.h"
 #include "server/assets/upload.h"
 #include "server/frame/request.h"
 #include "server/net/access.h"

@@ -4,7 +4,7 @@
 #ifndef SHEEN_SESSION_STATS_H
 #define SHEEN_SESSION_STATS_H
 
-#include "protocol/message.h"
+#include "protocol/messages/message.h"
 #include "server/base/histogram.h"
 #include "server/frame/scheduler.h"
 

@@ -9,7 +9,7 @@ for name in "$@"; do
     "$build/tests/fuzz_$name" "tests/fuzz/corpus/$name" >/dev/null
 done
 # The protocol, the readers, and the code that reads answers of workers.
-for object in "$build"/obj/protocol/*.gcno "$build"/obj/server/cage/*.gcno \
+for object in "$build"/obj/protocol/*.gcno "$build"/obj/protocol/messages/*.gcno "$build"/obj/server/cage/*.gcno \
     "$build"/obj/server/cage/build/*.gcno "$build"/obj/server/cage/read/*.gcno "$build"/obj/server/cage/read/*/*.gcno \
     "$build"/obj/server/sandbox/stream.*.gcno "$build"/obj/server/sandbox/job.*.gcno "$build"/obj/server/sandbox/*_code.*.gcno; do
     gcov -n -s "$(pwd)" -r "$object" 2>/dev/null

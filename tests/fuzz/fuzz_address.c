@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "protocol/address.h"
-#include "protocol/message.h"
+#include "protocol/messages/message.h"
 #include "tests/fuzz/fuzz.h"
 
 void fuzz_one(const uint8_t *bytes, size_t size)

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "protocol/codec.h"
-#include "protocol/message.h"
+#include "protocol/messages/message.h"
 #include "tests/fuzz/fuzz.h"
 
 union body {

@@ -17,7 +17,7 @@
 
 #include "client/lib/sheen.h"
 #include "protocol/codec.h"
-#include "protocol/message.h"
+#include "protocol/messages/message.h"
 
 #define WIDTH 8
 #define HEIGHT 4

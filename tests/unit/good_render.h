@@ -2,7 +2,7 @@
 #ifndef SHEEN_TESTS_UNIT_GOOD_RENDER_H
 #define SHEEN_TESTS_UNIT_GOOD_RENDER_H
 
-#include "protocol/message.h"
+#include "protocol/messages/message.h"
 
 static const sheen_Render GOOD = {
     .width_px = 640,

@@ -5,7 +5,7 @@
 #include <cmocka.h>
 #include <string.h>
 
-#include "protocol/message.h"
+#include "protocol/messages/message.h"
 #include "tests/unit/good_render.h"
 
 #define NOT_WELL_FORMED "it is not well-formed"

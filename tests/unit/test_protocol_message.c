@@ -9,7 +9,7 @@
 
 #include "protocol/codec.h"
 #include "protocol/limits.h"
-#include "protocol/message.h"
+#include "protocol/messages/message.h"
 #include "tests/unit/good_render.h"
 
 static void text_is_utf8_without_controls(void **state)

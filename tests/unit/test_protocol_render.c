@@ -8,7 +8,7 @@
 
 #include "protocol/codec.h"
 #include "protocol/limits.h"
-#include "protocol/message.h"
+#include "protocol/messages/message.h"
 #include "tests/unit/good_render.h"
 
 static bool check(const sheen_Render *render, char *text)

@@ -12,7 +12,7 @@
 #include "protocol/break_records.h"
 #include "protocol/codec.h"
 #include "protocol/curve_records.h"
-#include "protocol/message.h"
+#include "protocol/messages/message.h"
 #include "protocol/ranges.h"
 
 #define SPECIFICATION "protocol/README.md"

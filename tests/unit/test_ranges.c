@@ -8,10 +8,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "protocol/message_values.h"
+#include "protocol/messages/message_values.h"
 #include "client/cli/commands.h"
 #include "protocol/limits.h"
-#include "protocol/message.h"
+#include "protocol/messages/message.h"
 #include "protocol/ranges.h"
 #include "server/scene/request_check.h"
 #include "server/scene/scene_convert.h"

@@ -6,7 +6,7 @@
 #include "client/lib/scene_convert.h"
 #include "client/lib/sized.h"
 #include "client/lib/status.h"
-#include "protocol/message_values.h"
+#include "protocol/messages/message_values.h"
 
 static struct sheen_compared_place place_of(const sheen_ComparedPlace *from)
 {

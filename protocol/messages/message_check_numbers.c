@@ -3,7 +3,7 @@
 
 #include "protocol/break_records.h"
 #include "protocol/curve_records.h"
-#include "protocol/message_check.h"
+#include "protocol/messages/message_check.h"
 
 /* Requests of computations have no picture: what only pictures have must be what it is in a request that leaves it
  * out, so that a field which has no influence is not taken for one that has. */

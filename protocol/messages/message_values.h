@@ -3,7 +3,7 @@
 #ifndef SHEEN_PROTOCOL_MESSAGE_VALUES_H
 #define SHEEN_PROTOCOL_MESSAGE_VALUES_H
 
-#include "protocol/message.h"
+#include "protocol/messages/message.h"
 
 static inline sheen_Vec3 message_vec3(const double v[3])
 {

@@ -1,7 +1,7 @@
 /* The checks of message.h, of camera, lights and lines. */
 #include <stdio.h>
 
-#include "protocol/message_check.h"
+#include "protocol/messages/message_check.h"
 #include "protocol/ranges.h"
 
 static bool is_zero(const sheen_Vec3 *v)

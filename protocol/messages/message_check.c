@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "protocol/codec.h"
-#include "protocol/message_check.h"
+#include "protocol/messages/message_check.h"
 #include "protocol/ranges.h"
 
 bool message_check_model_query(const sheen_ModelQuery *query, char text[static MESSAGE_TEXT_BYTES])

@@ -2,7 +2,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 
-#include "protocol/message_check.h"
+#include "protocol/messages/message_check.h"
 #include "protocol/ranges.h"
 #include "protocol/text.h"
 

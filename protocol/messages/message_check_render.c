@@ -2,7 +2,7 @@
 #include <math.h>
 
 #include "protocol/codec.h"
-#include "protocol/message_check.h"
+#include "protocol/messages/message_check.h"
 #include "protocol/ranges.h"
 
 /* "" if the planes suit the encoding, else what they must be. */

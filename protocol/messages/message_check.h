@@ -3,7 +3,7 @@
 #ifndef SHEEN_PROTOCOL_MESSAGE_CHECK_H
 #define SHEEN_PROTOCOL_MESSAGE_CHECK_H
 
-#include "protocol/message.h"
+#include "protocol/messages/message.h"
 #include "protocol/ranges.h"
 
 /* Writes the line and returns false. */

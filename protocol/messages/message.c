@@ -1,4 +1,4 @@
-#include "protocol/message.h"
+#include "protocol/messages/message.h"
 
 #include <pb_decode.h>
 #include <pb_encode.h>

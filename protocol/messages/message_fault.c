@@ -1,6 +1,6 @@
 /* message_find_fault(): nanopb reports only that a body breaks the schema; this file finds
  * where. */
-#include "protocol/message.h"
+#include "protocol/messages/message.h"
 
 #include <inttypes.h>
 #include <pb_common.h>
