@@ -43,9 +43,7 @@ void measure_against_tables(const table_evaluator &tables, const planes &planes,
 double curvature_difference(const model &model, const planes &planes, size_t i,
                             const osd_sample &truth)
 {
-    vec3 n = truth.normal();
-    curvatures k = principal_curvatures(
-        {truth.p, truth.du, truth.dv, dot(truth.duu, n), dot(truth.duv, n), dot(truth.dvv, n)});
+    curvatures k = principal_curvatures(truth);
     double size = std::fmax(std::fmax(std::fabs(k.least), std::fabs(k.most)), 1 / model.diagonal());
     double off = std::fmax(std::fabs((double)planes.k_min[i] - k.least),
                            std::fabs((double)planes.k_max[i] - k.most));

@@ -20,6 +20,7 @@
 #include "tests/oracle/fault.h"
 #include "tests/oracle/raster.h"
 #include "tests/oracle/render.h"
+#include "tests/oracle/tables.h"
 
 namespace
 {
@@ -81,7 +82,7 @@ void choose_camera(const model &model, view *view)
 
 /* One pixel of every plane, NaN and no_face where nothing is hit. */
 struct pixel {
-    float p[3], n[3], u, v, s, t, colour;
+    float p[3], n[3], u, v, k[2], s, t, colour;
     uint32_t face;
     float alpha, z;
 };
@@ -140,7 +141,8 @@ std::vector<pixel> draw(const job &job, const osd_oracle &oracle)
     const view &view = job.camera;
     raster picture = rasterize(oracle, view);
     projector camera(view);
-    pixel empty = {{NAN, NAN, NAN}, {NAN, NAN, NAN}, NAN, NAN, NAN, NAN, 0, no_face, 1, 0};
+    pixel empty = {
+        {NAN, NAN, NAN}, {NAN, NAN, NAN}, NAN, NAN, {NAN, NAN}, NAN, NAN, 0, no_face, 1, 0};
     std::vector<pixel> pixels((size_t)view.width_px * (size_t)view.height_px, empty);
     for (int y = 0; y < view.height_px; y++)
         for (int x = 0; x < view.width_px; x++) {
@@ -155,6 +157,9 @@ std::vector<pixel> draw(const job &job, const osd_oracle &oracle)
             pixel.face = hit.face;
             pixel.u = (float)u;
             pixel.v = (float)v;
+            curvatures k = principal_curvatures(s);
+            pixel.k[0] = (float)k.least;
+            pixel.k[1] = (float)k.most;
             vec3 origin, direction;
             camera.ray(x + 0.5, y + 0.5, &origin, &direction);
             if (job.light)
@@ -207,6 +212,8 @@ void break_figures(std::vector<pixel> *pixels, const view &view, double diagonal
         /* moves along the ray, so that the residual does not change */
         if (turn == 2 && has_fault("position"))
             store(pixel.p, p + 3e-6 * diagonal * ray);
+        if (turn == 4 && has_fault("curvature"))
+            pixel.k[0] -= (float)(2e-4 * std::fmax(1 / diagonal, std::fabs((double)pixel.k[0])));
         if (turn == 3 && has_fault("residual"))
             store(pixel.p, moved_aside(camera, p, x, y));
     }
@@ -276,6 +283,7 @@ void write_exr(const job &job, const std::vector<pixel> &pixels)
         {"P.Z", Imf::FLOAT, &first.p[2]},      {"N.X", Imf::FLOAT, &first.n[0]},
         {"N.Y", Imf::FLOAT, &first.n[1]},      {"N.Z", Imf::FLOAT, &first.n[2]},
         {"ptex.face", Imf::UINT, &first.face}, {"ptex.u", Imf::FLOAT, &first.u},
+        {"k.min", Imf::FLOAT, &first.k[0]},    {"k.max", Imf::FLOAT, &first.k[1]},
         {"ptex.v", Imf::FLOAT, &first.v},      {"light.s", Imf::FLOAT, &first.s},
         {"light.t", Imf::FLOAT, &first.t},     {"Z", Imf::FLOAT, &first.z},
     };

@@ -80,8 +80,8 @@ finds test_twin "$work/cube.obj" hole "only one has a surface"
 clean test_refine "$work/cube.obj"
 
 clean test_frames "$work/cube.obj"
-finds test_frames "$work/cube.obj" normal,unit,position,residual,winding,range,nan \
-    "normal p99.9" "position p99.9" "residual p99.9" "residual max" "| |N| - 1 |" \
+finds test_frames "$work/cube.obj" normal,unit,position,curvature,residual,winding,range,nan \
+    "normal p99.9" "position p99.9" "curvature p99.9" "residual p99.9" "residual max" "| |N| - 1 |" \
     "normals against the winding" "no surface at (face,u,v)" "hit, P and N disagree"
 finds test_frames "$work/cube.obj" silent "no camera in the JSON"
 finds test_frames "$work/cube.obj" types "channel N.X is of type"

@@ -87,6 +87,13 @@ curvatures principal_curvatures(const surface_point &s)
     return {mean - half, mean + half};
 }
 
+curvatures principal_curvatures(const osd_sample &sample)
+{
+    vec3 n = sample.normal();
+    return principal_curvatures(surface_point{sample.p, sample.du, sample.dv, dot(sample.duu, n),
+                                              dot(sample.duv, n), dot(sample.dvv, n)});
+}
+
 table_evaluator::table_evaluator(const cage &cage)
 {
     error error;

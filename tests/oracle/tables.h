@@ -4,6 +4,7 @@
 #ifndef SHEEN_TESTS_ORACLE_TABLES_H
 #define SHEEN_TESTS_ORACLE_TABLES_H
 
+#include "tests/oracle/osd_oracle.h"
 #include "tests/oracle/vec.h"
 
 extern "C" {
@@ -34,6 +35,8 @@ struct curvatures {
     double least, most;
 };
 curvatures principal_curvatures(const surface_point &s);
+/* Needs sample.has_normal(). */
+curvatures principal_curvatures(const osd_sample &sample);
 
 /* A place on a Ptex face: (a, b) seen from one of its corners, whose next corner is at (1, 0). Near
  * that corner doubles distinguish places that (u, v) would not. */
