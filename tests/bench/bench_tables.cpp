@@ -12,7 +12,6 @@
 #include <stdexcept>
 
 extern "C" {
-#include "server/surface/subdivision/build.h"
 #include "server/surface/support.h"
 }
 
@@ -23,12 +22,7 @@ namespace
 void build_on_demand(const cage &cage, int n_threads)
 {
     error error;
-    std::unique_ptr<limit_plan, void (*)(limit_plan *)> plan(limit_plan_create(&cage, NULL, &error),
-                                                             limit_plan_destroy);
-    limit_tables tables = {};
-    if (!plan || !limit_tables_init_on_demand(&tables, limit_plan_size(plan.get()), &error))
-        throw std::runtime_error(error.text);
-    build_all_faces(&tables, plan.get(), n_threads);
+    limit_tables tables = build_tables(cage, true, n_threads);
     if (!limit_find_support(&tables, NULL, &error))
         throw std::runtime_error(error.text);
     limit_tables_finish(&tables);

@@ -24,13 +24,6 @@ void check(bool ok, const error &error)
         throw std::runtime_error(error.text);
 }
 
-vec3 from(const double a[3])
-{
-    return {a[0], a[1], a[2]};
-}
-
-} // namespace
-
 void build_all_faces(limit_tables *tables, const limit_plan *plan, int n_threads)
 {
     const size_t range = 16;
@@ -52,14 +45,31 @@ void build_all_faces(limit_tables *tables, const limit_plan *plan, int n_threads
         check(built[k], errors[k]);
 }
 
-scene::scene(std::shared_ptr<const struct cage> whose, int n_threads) : cage(std::move(whose))
+vec3 from(const double a[3])
+{
+    return {a[0], a[1], a[2]};
+}
+
+} // namespace
+
+limit_tables build_tables(const struct cage &cage, bool on_demand, int n_threads)
 {
     error error;
-    std::unique_ptr<limit_plan, void (*)(limit_plan *)> plan(
-        limit_plan_create(cage.get(), NULL, &error), limit_plan_destroy);
+    limit_tables tables = {};
+    std::unique_ptr<limit_plan, void (*)(limit_plan *)> plan(limit_plan_create(&cage, NULL, &error),
+                                                             limit_plan_destroy);
     check(plan != nullptr, error);
-    check(limit_tables_init(&tables, limit_plan_size(plan.get()), &error), error);
+    const limit_size *size = limit_plan_size(plan.get());
+    check(on_demand ? limit_tables_init_on_demand(&tables, size, &error)
+                    : limit_tables_init(&tables, size, &error),
+          error);
     build_all_faces(&tables, plan.get(), n_threads);
+    return tables;
+}
+
+scene::scene(std::shared_ptr<const struct cage> whose, int n_threads)
+    : cage(std::move(whose)), tables(build_tables(*cage, false, n_threads))
+{
 }
 
 scene::~scene()
@@ -102,14 +112,18 @@ drawing::drawing(const scene &scene, const char *device, const char *isa)
     if (n == 0)
         error_set(&error, ERROR_REQUEST,
                   "device is '%s'; it must be auto, software, native or a device's number", device);
+    bool takes_on_demand = false;
     for (int i = 0; i < n && !renderer; i++) {
         renderer_options options = {};
         options.device = tries[i].device;
         options.isa = isa;
         renderer = renderer_create(tries[i].kind, &options, &error);
+        takes_on_demand = renderer_takes_tables_on_demand(tries[i].kind);
     }
     check(renderer != nullptr, error);
-    model = renderer_model_create(renderer, &scene.tables, &error);
+    if (takes_on_demand)
+        on_demand = build_tables(*scene.cage, true, bench_threads);
+    model = renderer_model_create(renderer, takes_on_demand ? &on_demand : &scene.tables, &error);
     if (!model)
         renderer_destroy(renderer);
     check(model != nullptr, error);
@@ -125,6 +139,7 @@ drawing::~drawing()
 {
     renderer_model_destroy(renderer, model);
     renderer_destroy(renderer);
+    limit_tables_finish(&on_demand);
 }
 
 frame drawing::render(const frame_request &request)

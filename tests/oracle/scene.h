@@ -11,11 +11,12 @@
  * every peer gets. */
 const int bench_threads = 2;
 
-/* Builds the tables of all faces as the daemon's pool does: idle threads take ranges of 16 faces. Throws
- * std::runtime_error if memory is short. */
-void build_all_faces(limit_tables *tables, const struct limit_plan *plan, int n_threads);
+/* All tables of a cage; idle threads take ranges of 16 faces, as in the daemon's pool. `on_demand` is
+ * what the native device takes; GL's devices take all points. The caller frees them by
+ * limit_tables_finish(). Throws std::runtime_error if the cage is refused. */
+limit_tables build_tables(const struct cage &cage, bool on_demand, int n_threads);
 
-/* A cage's tables, as the GL device takes them. */
+/* A cage with tables of all points. */
 class scene
 {
   public:
@@ -49,7 +50,7 @@ struct frame_cost {
     }
 };
 
-/* A renderer with one scene's tables on its device. */
+/* A renderer with one scene's model on its device, from tables of the kind that the device takes. */
 class drawing
 {
   public:
@@ -74,6 +75,7 @@ class drawing
   private:
     struct renderer *renderer;
     struct renderer_model *model;
+    limit_tables on_demand = {}; /* if the device takes them */
 };
 
 /* Turns the eye around the target about up. Frames of different cameras share no planes. */
