@@ -182,9 +182,12 @@ static void write_process(const struct daemon *daemon, struct text_buffer *text)
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &cpu);
     getrlimit(RLIMIT_NOFILE, &files);
     head(text, "thread_busy_seconds", "gauge",
-         "How long the GL thread, or the longest at work of the pool, has been at one piece.");
+         "How long the GL thread, the compiler of shaders, or the longest at work of a pool has "
+         "been at one piece.");
     text_buffer_add(text, "sheen_thread_busy_seconds{thread=\"gl\"} ");
     seconds(text, render_thread_busy_us(daemon->render_thread, now));
+    text_buffer_add(text, "\nsheen_thread_busy_seconds{thread=\"compile\"} ");
+    seconds(text, render_thread_compiling_us(daemon->render_thread, now));
     text_buffer_add(text, "\nsheen_thread_busy_seconds{thread=\"pool\"} ");
     seconds(text, pool_busy_us(daemon->pool, now));
     text_buffer_add(text, "\nsheen_thread_busy_seconds{thread=\"read\"} ");

@@ -21,6 +21,7 @@ struct monitor {
     const char *trouble;            /* of the workers, as logged last; NULL: none */
     uint64_t stuck_us, watchdog_us; /* watchdog_us is 0 without a watchdog */
     bool was_stuck;
+    bool lost_workers; /* a worker program cannot be started any more */
     int timer_fd;
     struct loop_source timer;
     struct listener *listener;
@@ -33,6 +34,8 @@ static const char *who_is_stuck(const struct monitor *monitor)
     uint64_t now = clock_now_us();
     if (render_thread_busy_us(monitor->daemon->render_thread, now) > monitor->stuck_us)
         return "the GL thread";
+    if (render_thread_compiling_us(monitor->daemon->render_thread, now) > monitor->stuck_us)
+        return "the compiler of shaders";
     if (pool_busy_us(monitor->daemon->pool, now) > monitor->stuck_us)
         return "a pool thread";
     return pool_busy_us(monitor->daemon->readers, now) > monitor->stuck_us ? "a reader thread"
@@ -93,10 +96,16 @@ static void feed_watchdog(struct monitor *monitor)
     monitor->was_stuck = stuck != NULL;
 }
 
+bool monitor_has_lost_workers(const struct monitor *monitor)
+{
+    return monitor->lost_workers;
+}
+
 /* Logs when a worker program begins or ceases to be in trouble. The watchdog is fed all the same: frames
  * need no worker. */
 static void tell_trouble(struct monitor *monitor)
 {
+    monitor->lost_workers = workers_are_lost(monitor->workers);
     const char *trouble = workers_trouble(monitor->workers);
     if (trouble == monitor->trouble)
         return;

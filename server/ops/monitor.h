@@ -1,5 +1,5 @@
 /* Watches the daemon while it serves. The monitor feeds the service manager's watchdog as long as
- * the render thread, the pool and the readers make progress, and it serves health and metrics over
+ * the render thread, the compiler of shaders, the pool and the readers make progress, and it serves health and metrics over
  * HTTP.
  * Thread: the one that runs the loop (server/net/loop.h). */
 #ifndef SHEEN_OPS_MONITOR_H
@@ -25,6 +25,8 @@ bool monitor_adopt(struct monitor *monitor, int fd, enum listener_reach reach, s
 /* The address that is served; "" if none is. */
 const char *monitor_address(const struct monitor *monitor);
 
+/* Can a worker program not be started any more? Looked at about once a second. */
+bool monitor_has_lost_workers(const struct monitor *monitor);
 /* Limits the HTTP connections to `most` at the same time, 1 to HTTP_MAX_CONNECTIONS (http_limit());
  * without an address it does nothing. */
 void monitor_limit(struct monitor *monitor, unsigned most);

@@ -79,8 +79,9 @@ void service_destroy(struct service *service); /* NULL is safe */
  *   seconds; the rest is then refused, and 4 s later the process exits even if threads are at work.
  *   A second signal ends the process at once.
  * - The only session of a private daemon has closed. The process may exit inside this call.
- * - The GPU was lost too often (limits.gpu_losses): as after SIGTERM, with SERVICE_GPU_LOST. */
-enum service_end { SERVICE_ENDED = 0, SERVICE_GPU_LOST = 75 /* EX_TEMPFAIL: start another */ };
+ * - The GPU was lost too often (limits.gpu_losses), or a process that starts worker programs has died: as
+ *   after SIGTERM, with SERVICE_START_ANOTHER. The daemon itself may start no process any more. */
+enum service_end { SERVICE_ENDED = 0, SERVICE_START_ANOTHER = 75 /* EX_TEMPFAIL */ };
 enum service_end service_run(struct service *service);
 
 #endif

@@ -35,11 +35,23 @@ static void count_losses(struct service *service)
                   log_number("generation", daemon->requests.gpu_generation));
         if (!often || daemon->sessions.draining)
             continue;
-        service->end = SERVICE_GPU_LOST;
+        service->end = SERVICE_START_ANOTHER;
         log_event(LOG_ERROR, "the GPU was lost too often: ending with exit code 75",
                   log_number("gpu_losses", daemon->limits.gpu_losses));
         drain(service);
     }
+}
+
+/* Ends a daemon that can read no new file any more. What needs no worker is finished. */
+static void end_without_workers(struct service *service)
+{
+    if (!service->monitor || service->daemon.sessions.draining ||
+        !monitor_has_lost_workers(service->monitor))
+        return;
+    service->end = SERVICE_START_ANOTHER;
+    log_event(LOG_ERROR, "a process that starts worker programs has died: ending with exit code 75",
+              log_text("program", "sheend-starter"));
+    drain(service);
 }
 
 /* Exits at once. Other threads may still be working, so nothing can be freed in order. */
@@ -76,6 +88,7 @@ static void after_batch(void *owner)
     struct daemon *daemon = &service->daemon;
     count_losses(service);
     drain_when_told(service);
+    end_without_workers(service);
     bool draining = daemon->sessions.draining;
     service_settle_sessions(service);
     request_start_next(&daemon->requests);

@@ -21,6 +21,9 @@ struct renderer_options {
      * FRAME_PROGRAMS may continue. It must not call the renderer. NULL: a step waits itself, and
      * never returns FRAME_PROGRAMS. */
     void (*woken)(void *owner);
+    /* Called on a thread of the device when it begins to make a program, and when it has ended, until the
+     * renderer is destroyed. May be NULL. */
+    void (*compiling)(void *owner, bool begins);
     void *owner;
     bool warm_up; /* prepare for usual frames while no frame waits for programs */
     struct block_cache *block_cache; /* memory of frames, outlives them; NULL: malloc() */

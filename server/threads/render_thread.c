@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "server/base/clock.h"
 #include "server/threads/pool.h"
 
 struct render_thread {
@@ -15,6 +16,7 @@ struct render_thread {
     char device[RENDERER_NAME_BYTES], driver[RENDERER_NAME_BYTES];
     struct pool *pool; /* a pool of one thread */
     atomic_uint losses, wakes;
+    _Atomic uint64_t compiling_since_us; /* 0: no program is being made */
     struct completions *completions;
 };
 
@@ -29,6 +31,12 @@ static void frames_woken(void *owner)
     struct render_thread *thread = owner;
     atomic_fetch_add(&thread->wakes, 1);
     completions_wake(thread->completions);
+}
+
+static void compiling(void *owner, bool begins)
+{
+    struct render_thread *thread = owner;
+    atomic_store(&thread->compiling_since_us, begins ? clock_now_us() : 0);
 }
 
 static bool open_device(void *owner, void **context, struct error *error)
@@ -64,10 +72,12 @@ struct render_thread *render_thread_create(const struct renderer_device *device,
     thread->options = *options;
     thread->options.lost = device_lost;
     thread->options.woken = frames_woken;
+    thread->options.compiling = compiling;
     thread->options.owner = thread;
     thread->completions = completions;
     atomic_init(&thread->losses, 0);
     atomic_init(&thread->wakes, 0);
+    atomic_init(&thread->compiling_since_us, 0);
     const struct pool_context context = {open_device, close_device, thread};
     thread->pool = pool_create("sheend-gl", 1, 0, &context, completions, error);
     if (!thread->pool) {
@@ -113,4 +123,10 @@ uint32_t render_thread_wakes(const struct render_thread *thread)
 uint64_t render_thread_busy_us(const struct render_thread *thread, uint64_t now_us)
 {
     return pool_busy_us(thread->pool, now_us);
+}
+
+uint64_t render_thread_compiling_us(const struct render_thread *thread, uint64_t now_us)
+{
+    uint64_t since_us = atomic_load(&thread->compiling_since_us);
+    return since_us > 0 && since_us < now_us ? now_us - since_us : 0;
 }

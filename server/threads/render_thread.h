@@ -33,6 +33,9 @@ uint32_t render_thread_wakes(const struct render_thread *thread);
 /* As pool_busy_us(). */
 uint64_t render_thread_busy_us(const struct render_thread *thread, uint64_t now_us);
 
+/* How long the device has been making one program; 0: it makes none. Any thread. */
+uint64_t render_thread_compiling_us(const struct render_thread *thread, uint64_t now_us);
+
 /* The device that the thread was created with. */
 const struct renderer_device *render_thread_device(const struct render_thread *thread);
 

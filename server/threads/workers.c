@@ -98,12 +98,19 @@ const char *workers_trouble(struct workers *workers)
 {
     static const char *const texts[2][3] = {
         {NULL, "sheend-cage does not answer: it will be started again",
-         "sheend-cage cannot be started any more, so no new model is read: restart the daemon"},
+         "sheend-cage cannot be started any more, so no new model is read: the daemon ends, for "
+         "another to start"},
         {NULL, "sheend-image does not answer: it will be started again",
          "sheend-image cannot be started any more, so no image, EXR or TIFF is read or written: "
-         "restart the daemon"}};
+         "the daemon ends, for another to start"}};
     const enum worker_health cages = worker_health(workers->cages);
     return cages != WORKER_WELL ? texts[0][cages] : texts[1][worker_health(workers->images)];
+}
+
+bool workers_are_lost(struct workers *workers)
+{
+    return worker_health(workers->cages) == WORKER_LOST ||
+           worker_health(workers->images) == WORKER_LOST;
 }
 
 void workers_limit_jobs(struct workers *workers, unsigned most)

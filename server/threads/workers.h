@@ -54,6 +54,8 @@ void workers_expect_images(struct workers *workers);
 void workers_limit_jobs(struct workers *workers, unsigned most);
 /* NULL if both programs are well, else one line for health checks: which is not, and why. */
 const char *workers_trouble(struct workers *workers);
+/* Can one of the programs not be started again? A daemon that is confined cannot mend this. */
+bool workers_are_lost(struct workers *workers);
 /* worker_stop() for both programs. */
 void workers_stop(struct workers *workers);
 

@@ -379,7 +379,7 @@ class StuckCompiler(unittest.TestCase):
     LATTICE = wire.field(5, wire.field(6, wire.field(1, 1)))
 
     def test_frames_whose_programs_exist_are_drawn(self):
-        server = FaultyDaemon("lattice.stuck:1:1", "--device", MESA)
+        server = FaultyDaemon("lattice.stuck:1:1", "--device", MESA, "--stuck-after", "1", "--metrics", "tcp:127.0.0.1:0")
         self.addCleanup(server.process.kill)
         with wire.Client(server.unix, minor=1) as first, wire.Client(server.unix) as second:
             model = first.upload(CUBE, "cube.obj", share=True)
@@ -395,6 +395,15 @@ class StuckCompiler(unittest.TestCase):
             self.assertEqual({seq for seq, _ in cancelled}, set(lattices))
             self.assertEqual({error.code for _, error in cancelled}, {wire.ERROR_CANCELLED})
             self.assertEqual(second.render(model).data, expected)
+        self.assert_health_tells(server)
+
+    def assert_health_tells(self, server):
+        address = metrics_address(server)
+        while not get(address, "/healthz")[1].startswith("the compiler of shaders has been at one piece of work"):
+            time.sleep(0.1)
+        self.assertEqual(get(address, "/healthz")[0], 503)
+        self.assertGreater(read_metrics(get(address, "/metrics")[1])['sheen_thread_busy_seconds{thread="compile"}'], 1)
+        server.wait_for("the compiler of shaders")
 
 
 class Killed(unittest.TestCase):

@@ -241,7 +241,8 @@ class ServiceManager(unittest.TestCase):
             time.sleep(0.05)
 
     def test_health_tells_of_worker_programs(self):
-        """A stopped program is replaced, and its job is done. Without its starter it cannot be."""
+        """A stopped program is replaced, and its job is done. Without its starter it cannot be: the daemon finishes what
+        it does and ends, for the service manager to start another."""
         daemon = Daemon("--metrics", f"unix:{self.folder}/metrics")
         address, pid = metrics_address(daemon), daemon.process.pid
         with Client(daemon.unix, timeout=60) as client:
@@ -252,12 +253,18 @@ class ServiceManager(unittest.TestCase):
             client.read_frame(50)
             self.await_health(address, 200, "ok")
             client.seq = 50
+            client.send(b"".join(wire.render(60 + i, model, 3000, 3000, encoding=wire.JPEG) for i in range(2)))
             for starter in children(pid):
                 os.kill(starter, signal.SIGKILL)
-            self.await_health(address, 503, "sheend-cage cannot be started any more")
-            daemon.wait_for("cannot be started any more")
-            client.render(model)
-        self.assertEqual(daemon.stop(), 0)
+            log = daemon.wait_for("has died: ending with exit code 75")
+            self.assertIn("sheend-cage cannot be started any more", log)
+            for i in range(2):
+                client.read_frame(60 + i)
+            with self.assertRaises(wire.Refused) as caught:
+                client.receive()
+            self.assertEqual((caught.exception.seq, caught.exception.code), (0, wire.ERROR_SHUTTING_DOWN))
+        self.assertEqual(daemon.wait(), 75)
+        daemon.stop()
 
     def start_activated(self, sockets, names="", pid="os.getpid()", n=None, options=()):
         """Starts the daemon like a service manager: sockets from descriptor 3 on, and three variables."""

@@ -47,7 +47,8 @@ static void query_info(struct gl_renderer *r)
 static bool begin_context(struct gl_renderer *r, struct error *error)
 {
     r->context.number++;
-    r->maker = maker_create(&r->context.egl, r->programs, error);
+    const struct maker_watch watch = {r->base.options.compiling, r->base.options.owner};
+    r->maker = maker_create(&r->context.egl, r->programs, watch, error);
     if (!r->maker)
         return false;
     glPixelStorei(GL_PACK_ALIGNMENT, 1);

@@ -12,6 +12,7 @@ struct maker {
     const struct egl *egl;
     EGLContext context; /* current on the maker's thread */
     struct kept_programs *programs;
+    struct maker_watch watch;
     pthread_t thread;
     struct first_runs runs; /* objects of the thread */
 };
@@ -38,6 +39,12 @@ static GLuint make(struct maker *maker, const struct program_id *id, struct erro
     return name;
 }
 
+static void tell(const struct maker *maker, bool begins)
+{
+    if (maker->watch.compiling)
+        maker->watch.compiling(maker->watch.owner, begins);
+}
+
 static void *run(void *argument)
 {
     struct maker *maker = argument;
@@ -48,14 +55,17 @@ static void *run(void *argument)
     if (!is_ready)
         error_set(&failure, ERROR_DEVICE, "the device's second context cannot be used");
     while (kept_programs_take_order(maker->programs, &id, &at)) {
+        tell(maker, true);
         GLuint name = is_ready ? make(maker, &id, &failure) : 0;
+        tell(maker, false);
         kept_programs_finish_order(maker->programs, at, name, &failure);
     }
     egl_make_current(maker->egl, EGL_NO_CONTEXT);
     return NULL;
 }
 
-struct maker *maker_create(struct egl *egl, struct kept_programs *programs, struct error *error)
+struct maker *maker_create(struct egl *egl, struct kept_programs *programs,
+                           struct maker_watch watch, struct error *error)
 {
     struct maker *maker = calloc(1, sizeof *maker);
     if (!maker) {
@@ -64,6 +74,7 @@ struct maker *maker_create(struct egl *egl, struct kept_programs *programs, stru
     }
     maker->egl = egl;
     maker->programs = programs;
+    maker->watch = watch;
     maker->context = egl_create_sharing(egl);
     if (maker->context == EGL_NO_CONTEXT) {
         error_set(error, ERROR_DEVICE, "the device gives no second context, for compiling");

@@ -10,10 +10,17 @@
 
 struct maker;
 
+/* Told on the maker's thread when it begins to make a program, and when it has ended. NULL: nobody is told. */
+struct maker_watch {
+    void (*compiling)(void *owner, bool begins);
+    void *owner;
+};
+
 /* Starts the thread, which makes what is ordered in `programs`. *egl has the render thread's
  * context, which is current. Both must stay valid until maker_destroy(). NULL with ERROR_DEVICE if
  * the device gives no second context, or with ERROR_SERVER. */
-struct maker *maker_create(struct egl *egl, struct kept_programs *programs, struct error *error);
+struct maker *maker_create(struct egl *egl, struct kept_programs *programs,
+                           struct maker_watch watch, struct error *error);
 /* Waits for the program that is being made, and ends the thread. Orders stay in the list. NULL is
  * safe. */
 void maker_destroy(struct maker *maker);
