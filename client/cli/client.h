@@ -72,4 +72,10 @@ void client_json_origin(struct json *json, const struct client *client,
 /* Writes the keys tables_us to total_us. */
 void client_json_times(struct json *json, const struct sheen_times *times);
 
+/* Where the tables of a daemon's models lie, for "N bytes ...". software: as the daemon says of itself. */
+static inline const char *client_place_of_tables(bool software)
+{
+    return software ? "in main memory" : "on the device";
+}
+
 #endif

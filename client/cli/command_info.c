@@ -152,9 +152,10 @@ static void print_table(const struct sheen_model_info *info, const struct sheen_
                                         {info->split_nodes, "split, ", "split, "},
                                         {info->hole_nodes, "without surface", "without surface"},
                                         {0}});
-    printf("%-16s %" PRIu64 " bytes on the device: %" PRIu64 " a regular patch, %" PRIu64
+    printf("%-16s %" PRIu64 " bytes %s: %" PRIu64 " a regular patch, %" PRIu64
            " a corner patch at most\n",
-           "tables", info->table_bytes, info->regular_bytes, info->corner_bytes);
+           "tables", info->table_bytes, client_place_of_tables(server->software),
+           info->regular_bytes, info->corner_bytes);
     printf("%-16s %.1f ms\n", "built in", (double)info->tables_us / 1e3);
     printf("%-16s %s (%s)\n", "device", server->device, server->driver);
 }

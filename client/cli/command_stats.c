@@ -136,8 +136,8 @@ static void print_table(const struct sheen_stats *stats)
            (double)stats->batch_us / 1e6);
     printf("%-10s %" PRIu64 " bytes in use, of --memory-budget\n", "memory", stats->memory_bytes);
     print_budget(stats);
-    printf("%-10s %u, %" PRIu64 " bytes on the device; %u images\n", "models", stats->models,
-           stats->model_bytes, stats->images);
+    printf("%-10s %u, %" PRIu64 " bytes of tables %s; %u images\n", "models", stats->models,
+           stats->model_bytes, client_place_of_tables(stats->software), stats->images);
     printf("%-10s %" PRIu64 " bytes uploaded, %" PRIu64 " bytes sent\n", "traffic",
            stats->uploads_bytes, stats->sent_bytes);
     printf("%-10s %.1f requests/s, %.1f frames/s, %.0f bytes/s over the last %.0f s\n", "rates",

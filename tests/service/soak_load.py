@@ -5,12 +5,14 @@ import os
 import resource
 import subprocess
 import sys
+import threading
 import time
 import unittest
 
 import test_load
 import wire
 from daemon import BUILD, CUBE, DEVICE, Daemon, grid, resident_kb
+from test_budget import mixed_load
 from load import make_clients, percentile, run_load
 from wire import INTERACTIVE, Client, field
 
@@ -168,6 +170,67 @@ class Greedy(unittest.TestCase):
                 with self.subTest(connections=connections):
                     self.assertLessEqual(p95[1], 2 * p95[0])
         self.assertEqual(self.daemon.stop(), 0)
+
+
+class SoakBudget(unittest.TestCase):
+    """A mixed load at the least budget and at 1 GB, both at once: resident memory stays within 15 % of the budget and
+    does not grow."""
+    CLIENTS = 3
+
+    def watch(self, daemon, mib, figures):
+        """Samples the daemon's resident memory while its clients load it, after a tenth of the time."""
+        start, samples, done = time.monotonic(), [], []
+        ends = start + SECONDS
+        clients = [threading.Thread(target=mixed_load, args=(daemon, seed, ends, done)) for seed in range(self.CLIENTS)]
+        for client in clients:
+            client.start()
+        time.sleep(SECONDS / 10)
+        while any(client.is_alive() for client in clients):
+            samples.append((time.monotonic() - start, resident_kb(daemon.process.pid)))
+            time.sleep(0.02)
+        figures[mib] = samples, len(done)
+
+    def test_mixed_load(self):
+        figures = {}
+        daemons = {mib: Daemon("--memory-budget", f"{mib}M", tcp=False) for mib in (36, 1024)}
+        watches = [threading.Thread(target=self.watch, args=(daemon, mib, figures)) for mib, daemon in daemons.items()]
+        for watch in watches:
+            watch.start()
+        for watch in watches:
+            watch.join()
+        for mib, daemon in daemons.items():
+            samples, frames = figures[mib]
+            most = max(kb for _, kb in samples) / 1024
+            # The slope of the tenths' means, with its standard error: neighbouring samples are not independent.
+            means = [sum(part) / len(part) / 1024 for part in tenths(samples)]
+            slope, error = slope_of(means)
+            say(f"mixed load, {SECONDS} s at {mib} MB: {frames} frames, resident at most {most:.1f} MB "
+                f"({most / mib:.3f} x), means of its tenths {', '.join(f'{mean:.1f}' for mean in means)} MB: "
+                f"{10 * slope:+.2f} +- {10 * error:.2f} MB over the time")
+            with self.subTest(budget=mib):
+                self.assertGreater(frames, 5)
+                self.assertLessEqual(most, 1.15 * mib)
+                self.assertLessEqual(10 * slope, 30 * error + 0.01 * mib)
+            self.assertEqual(daemon.stop(), 0)
+
+
+def tenths(samples):
+    """The values of [(time, value)] in ten parts of equal time."""
+    begin, end = samples[0][0], samples[-1][0]
+    parts = [[] for _ in range(10)]
+    for at, value in samples:
+        parts[min(9, int(10 * (at - begin) / (end - begin)))].append(value)
+    return [part for part in parts if part]
+
+
+def slope_of(values):
+    """The least-squares line's slope for each step, and its standard error."""
+    n = len(values)
+    middle, mean = (n - 1) / 2, sum(values) / n
+    spread = sum((i - middle) ** 2 for i in range(n))
+    slope = sum((i - middle) * (value - mean) for i, value in enumerate(values)) / spread
+    rest = sum((value - mean - slope * (i - middle)) ** 2 for i, value in enumerate(values))
+    return slope, math.sqrt(rest / (n - 2) / spread)
 
 
 class SoakMisbehaviour(test_load.Misbehaviour):

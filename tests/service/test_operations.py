@@ -728,7 +728,7 @@ class Stats(unittest.TestCase):
         self.assertLess(sum(budget.values()) - budget["bytes"], budget["bytes"])
         table = subprocess.run([SHEEN, "stats", "--server", daemon.unix], capture_output=True,
                                text=True, timeout=60).stdout
-        for words in ("frames/s", "bytes/s", "p50", "p95", "p99", "ms a frame", "interactive", "bytes on the device;",
+        for words in ("frames/s", "bytes/s", "p50", "p95", "p99", "ms a frame", "interactive", "bytes of tables in main memory;",
                       "bytes uploaded, ", "bytes in use, of --memory-budget", "models and images 0.", "device time spent, s: interactive",
                       "frames that needed the stage"):
             self.assertIn(words, table)

@@ -61,7 +61,7 @@ struct sheen_model_info {
     uint32_t nonmanifold_edges;
     uint32_t nonmanifold_vertices; /* vertices whose faces are not a single fan */
     uint32_t regular_patches, corner_patches, strip_patches, split_nodes, hole_nodes;
-    /* Memory of the tables on the GPU; without a GPU in main memory. */
+    /* Memory of the tables: on the device, or in main memory where processors draw. */
     uint64_t table_bytes;
     uint64_t regular_bytes, corner_bytes; /* bytes of one such patch */
     uint64_t tables_us;                   /* time to read, build and upload */

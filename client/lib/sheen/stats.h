@@ -24,7 +24,7 @@ struct sheen_stats {
     uint32_t sessions, queued; /* now */
     uint64_t frames, errors;   /* since the start */
     uint32_t models, images;   /* in the daemon's memory now */
-    uint64_t model_bytes;      /* memory of tables on the GPU */
+    uint64_t model_bytes; /* memory of the models' tables, where sheen_model_info.table_bytes are */
     uint64_t uploads_bytes, sent_bytes;
     uint64_t superseded, cancelled, late; /* requests with this answer since the start */
     /* Clients disconnected for exceeding a limit or breaking the protocol. */
