@@ -211,16 +211,29 @@ $(BUILD)/obj/%.c.o: %.c | $(GEN)
 	@mkdir -p $(@D)
 	$(call say,CC $<)
 	$(Q)$(CC) $(CFLAGS) -c -o $@ $<
+# With g++ alone, a header that many files include is parsed once for them, because parsing it takes a third of the
+# compiler's time; with ccache not, because ccache would then keep nothing. The code is equal either way, so objects do not
+# become old when such a parsed header appears, and `make install` needs none.
+PARSED_ONCE := $(and $(filter g++,$(CXX)),$(if $(filter ccache,$(CXX))$(filter install,$(MAKECMDGOALS)),,yes))
+define parsed_once # folder, header, flags of those files
+$(1)/parsed.hpp.gch: $(2)
+	@mkdir -p $$(@D)
+	$$(call say,CXX $(2) $$(notdir $(1)))
+	$$(Q)echo '#include "$(2)"' > $(1)/parsed.hpp && $$(CXX) $$(CXXFLAGS) $(3) -x c++-header -o $$@ $(1)/parsed.hpp
+endef
+# The flags of files that include it before all else.
+use_parsed = $(if $(PARSED_ONCE),-I$(1) -include parsed.hpp)
 # Compiles a source for one instruction set.
 define lanes_of
+$(eval $(call parsed_once,$(BUILD)/obj/gen/lanes/$(1),server/render/native/programs/glsl.hpp,$(LANES_FLAGS) $(LANES_CXXFLAGS) $(LANES_$(1)) -DLANE_SET=$(1)))
 $(BUILD)/obj/%.$(1).o: %.c
 	@mkdir -p $$(@D)
 	$$(call say,CC $$< $(1))
 	$$(Q)$$(CC) $$(CFLAGS) $$(LANES_FLAGS) $$(LANES_$(1)) -DLANE_SET=$(1) -c -o $$@ $$<
-$(BUILD)/obj/gen/lanes/%.$(1).o: $(BUILD)/gen/lanes/%.cpp
+$(BUILD)/obj/gen/lanes/%.$(1).o: $(BUILD)/gen/lanes/%.cpp $(wildcard server/render/native/programs/*.h*) $(if $(PARSED_ONCE),| $(BUILD)/obj/gen/lanes/$(1)/parsed.hpp.gch)
 	@mkdir -p $$(@D)
 	$$(call say,CXX $$< $(1))
-	$$(Q)$$(CXX) $$(CXXFLAGS) $$(LANES_FLAGS) $$(LANES_CXXFLAGS) $$(LANES_$(1)) -DLANE_SET=$(1) -c -o $$@ $$<
+	$$(Q)$$(CXX) $$(CXXFLAGS) $(call use_parsed,$(BUILD)/obj/gen/lanes/$(1)) $$(LANES_FLAGS) $$(LANES_CXXFLAGS) $$(LANES_$(1)) -DLANE_SET=$(1) -c -o $$@ $$<
 endef
 $(foreach set,$(LANE_SETS),$(eval $(call lanes_of,$(set))))
 $(BUILD)/obj/%.cpp.o: %.cpp | $(GEN)
@@ -259,17 +272,14 @@ TEST_LIB := $(BUILD)/libtests.a
 # only (-g1): a link leaves their debug information out, and writing all of it takes a quarter of the compiler's time.
 TEST_LINK := $(if $(FUZZ)$(SANITIZE)$(COVERAGE),,-fuse-ld=gold -Wl,--strip-debug)
 $(BUILD)/obj/tests/%.o: BASE += $(if $(TEST_LINK),-g1)
-# With g++ alone the headers of tests/standard.hpp are compiled once; ccache would then keep nothing.
-STANDARD := $(if $(filter g++,$(CXX)),$(if $(filter ccache,$(CXX))$(FUZZ)$(SANITIZE)$(COVERAGE),,$(BUILD)/obj/tests/standard.hpp.gch))
-ifneq ($(STANDARD),)
+# The C++ of oracles and benchmarks, but that of a peer, which has flags of its own.
+ifneq ($(PARSED_ONCE),)
+STANDARD := $(BUILD)/obj/tests/parsed.hpp.gch
 $(STANDARD): BASE += $(if $(TEST_LINK),-g1)
-$(STANDARD): tests/standard.hpp
-	@mkdir -p $(@D)
-	$(call say,CXX $<)
-	$(Q)$(CXX) $(CXXFLAGS) -x c++-header -o $@ $<
+$(eval $(call parsed_once,$(BUILD)/obj/tests,tests/standard.hpp))
 USE_STANDARD := $(call obj,$(filter-out tests/bench/embree.cpp,$(wildcard tests/oracle/*.cpp tests/bench/*.cpp)))
-$(USE_STANDARD): $(STANDARD)
-$(USE_STANDARD): private CXXFLAGS += -I$(BUILD)/obj/tests -include standard.hpp -Winvalid-pch
+$(USE_STANDARD): | $(STANDARD)
+$(USE_STANDARD): private CXXFLAGS += $(call use_parsed,$(BUILD)/obj/tests)
 endif
 $(TEST_LIB): $(LIB_OBJ)
 	$(Q)rm -f $@ && ar rcsP $@ $^
