@@ -1,7 +1,9 @@
 """COMPARE through real sockets. What is computed is judged by tests/oracle/test_comparison.cpp; here that the request
 reaches it whole, and the order of service."""
+import math
 import re
 import struct
+import time
 import unittest
 
 import wire
@@ -26,6 +28,15 @@ def moved(obj, index, by):
     x, y, z = map(float, lines[at].split()[1:])
     lines[at] = f"v {x} {y} {z + by}"
     return "\n".join(lines).encode()
+
+
+def pole(n, height):
+    """n quads around one vertex, which has this height."""
+    lines = [f"v 0 0 {height}"]
+    lines += [f"v {r * math.cos(k * math.pi / n)} {r * math.sin(k * math.pi / n)} 0"
+              for k in range(2 * n) for r in (1.3 if k % 2 else 1,)]
+    lines += [f"f 1 {2 + 2 * k} {3 + 2 * k} {2 + (2 * k + 2) % (2 * n)}" for k in range(n)]
+    return ("\n".join(lines) + "\n").encode()
 
 
 class Comparisons(DaemonCase):
@@ -112,6 +123,35 @@ class Comparisons(DaemonCase):
         self.assertIn(caught.exception.code, (wire.ERROR_CANCELLED, wire.ERROR_REQUEST))
         answer = self.compared(client, sheet, sheet)  # the daemon goes on
         self.assertEqual(self.number(self.measure(answer, OLD, DISTANCE), WORST), 0)
+
+    def test_a_pole_keeps_nobody_waiting(self):
+        """Every sample looks for its counterpart among 300 faces that meet in one vertex, and the line along its normal
+        misses. Meanwhile another client gets its picture, and the comparison can be cancelled."""
+        client, other = self.client(), self.client()
+        old, new = (client.upload(pole(300, height), f"{height}.obj") for height in (0, 0.1))
+        cube = other.upload(CUBE, "cube.obj")
+        seq = client.next_seq()
+        client.send(compare(seq, old, new, field(9, 2000000)))
+        self.wait_for_stage(client, seq, "samples")
+        frame = other.render(cube, 64, 48, encoding=wire.PNG)
+        self.assertEqual(frame.data[:8], b"\x89PNG\r\n\x1a\n")
+        self.wait_for_stage(client, seq, "samples")  # it has not ended
+        start = time.monotonic()
+        client.send(message(wire.CANCEL, seq))
+        with self.assertRaises(wire.Refused) as caught:
+            client.receive()
+        self.assertEqual((caught.exception.seq, caught.exception.code), (seq, wire.ERROR_CANCELLED))
+        answer = self.compared(client, cube, cube, field(9, 1000))  # no thread of the pool is still at it
+        self.assertEqual(self.number(self.measure(answer, OLD, DISTANCE), WORST), 0)
+        self.assertLess(time.monotonic() - start, 20 * wire.PATIENCE)
+
+    def wait_for_stage(self, client, seq, stage):
+        name = ""
+        while name != stage:
+            _, kind, _, length, got = struct.unpack("<BBHII", client.read(16)[4:])
+            fields = wire.decode(client.read(length))
+            self.assertEqual((kind, got), (wire.PROGRESS, seq))
+            name = fields[1][0].decode()
 
 
 if __name__ == "__main__":

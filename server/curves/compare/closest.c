@@ -42,6 +42,7 @@ struct search {
         is_across[3]; /* a coordinate is so small that the line does not change it within a model */
     double reach;     /* nothing farther along n is of interest any more */
     double agreement; /* cosine between n and the normal at `best` */
+    struct made_levels *made;
     struct closest *best;
 };
 
@@ -71,7 +72,7 @@ static void meet(struct search *search, const struct rectangle *in, double x, do
     bool is_last = false;
     for (int step = 0; step < MOST_STEPS; step++) {
         struct limit_point at;
-        kept_surface_evaluate(surface, in->leaf, x, y, &at);
+        kept_surface_evaluate_again(surface, in->leaf, x, y, search->made, &at);
         struct vec d = vec_sub(at.s, search->p);
         double f = vec_dot(search->across[0], d), g = vec_dot(search->across[1], d);
         if (is_last || (f == 0 && g == 0)) {
@@ -105,11 +106,11 @@ static inline double larger(double a, double b)
     return a > b ? a : b;
 }
 
-/* The least |distance| at which the line may be in a box, or infinity. */
-static double enter(const struct search *search, const struct tree_box *box)
+/* Narrows the range of distances along the line to where it may be in a box. False if it misses the box. */
+static bool clip(const struct search *search, const struct tree_box *box, double range[2])
 {
     const double p[3] = {search->p.x, search->p.y, search->p.z};
-    double least = -search->reach, most = search->reach;
+    double least = range[0], most = range[1];
     for (int k = 0; k < 3; k++) {
         double low = (double)box->least[k], high = (double)box->most[k];
         double margin = 1e-6 * (high - low);
@@ -117,65 +118,44 @@ static double enter(const struct search *search, const struct tree_box *box)
         high += margin - p[k];
         if (search->is_across[k]) {
             if (low > 0 || high < 0)
-                return INFINITY;
+                return false;
             continue;
         }
         double a = low * search->inverse[k], b = high * search->inverse[k];
         least = larger(least, smaller(a, b));
         most = smaller(most, larger(a, b));
     }
-    if (!(least <= most))
+    range[0] = least;
+    range[1] = most;
+    return least <= most;
+}
+
+/* The least |distance| at which the line may be in a box, or infinity. */
+static double enter(const struct search *search, const struct tree_box *box)
+{
+    double range[2] = {-search->reach, search->reach};
+    if (!clip(search, box, range))
         return INFINITY;
-    return least > 0 ? least : most < 0 ? -most : 0;
+    return range[0] > 0 ? range[0] : range[1] < 0 ? -range[1] : 0;
 }
 
-/* The rest about a vertex consists of many levels, and only within a level Newton's method converges. */
-struct rest {
-    struct limit_point vertex;
-    double extent; /* about how far it reaches from the vertex */
-};
-
-static struct rest rest_of(const struct kept_surface *surface, const struct rectangle *in)
+static const struct corner_sector *sector_of(const struct surface_tree *tree, size_t leaf)
 {
-    struct rest rest;
-    struct limit_point at;
-    kept_surface_evaluate(surface, in->leaf, 0, 0, &rest.vertex);
-    kept_surface_evaluate(surface, in->leaf, in->width, in->height, &at);
-    rest.extent = vec_length(vec_sub(at.s, rest.vertex.s));
-    return rest;
-}
-
-/* The side of the square about the vertex that reaches as far as `away`, and three places to begin with in its outermost
- * level. */
-static double rest_starts(const struct kept_surface *surface, const struct rectangle *in,
-                          const struct rest *rest, double away, double starts[3][2])
-{
-    double side = in->width, extent = rest->extent;
-    struct limit_point at;
-    for (int level = 0; level < LIMIT_MAX_LEVELS && extent > 1.5 * away; level++) {
-        side *= 0.5;
-        kept_surface_evaluate(surface, in->leaf, side, side, &at);
-        extent = vec_length(vec_sub(at.s, rest->vertex.s));
-    }
-    const double shares[3][2] = {{0.7, 0.7}, {0.8, 0.2}, {0.2, 0.8}};
-    for (int k = 0; k < 3; k++) {
-        starts[k][0] = shares[k][0] * side;
-        starts[k][1] = shares[k][1] * side;
-    }
-    return side;
+    return &tree->sectors[tree->surface->leaves[leaf].corner];
 }
 
 static void meet_rest(struct search *search, const struct rectangle *in)
 {
     const struct kept_surface *surface = search->tree->surface;
-    struct rest rest = rest_of(surface, in);
-    struct vec d = vec_sub(search->p, rest.vertex.s);
+    const struct corner_sector *sector = sector_of(search->tree, in->leaf);
+    struct vec d = vec_sub(search->p, sector->vertex.s);
     double away = hypot(vec_dot(search->across[0], d), vec_dot(search->across[1], d)), starts[3][2];
-    if (away <= 1e-8 * rest.extent) {
-        take_met(search, in->leaf, 0, 0, &rest.vertex);
+    if (away <= 1e-8 * sector->extent) {
+        take_met(search, in->leaf, 0, 0, &sector->vertex);
         return;
     }
-    double side = fmin(2 * rest_starts(surface, in, &rest, away, starts), in->width);
+    double side = fmin(
+        2 * corner_rest_starts(sector, surface, in->leaf, away, search->made, starts), in->width);
     const struct rectangle level = {in->leaf, 0, 0, side, side};
     for (int k = 0; k < 3; k++)
         meet(search, &level, starts[k][0], starts[k][1]);
@@ -189,7 +169,11 @@ static void meet_pieces(struct search *search, size_t first, size_t end)
         struct rectangle in = rectangle_of(piece);
         bool is_found =
             best->kind == CLOSEST_RAY && best->leaf == in.leaf && is_within(&in, best->x, best->y);
-        if (is_found || !(enter(search, &piece->box) <= search->reach))
+        double range[2] = {-search->reach, search->reach};
+        if (is_found || !clip(search, &piece->box, range))
+            continue;
+        if (piece->is_corner &&
+            !corner_sector_clip(sector_of(search->tree, in.leaf), search->p, search->n, range))
             continue;
         if (piece->is_rest)
             meet_rest(search, &in);
@@ -210,7 +194,6 @@ static const struct tree_box *box_of(const struct surface_tree *tree, unsigned d
     return &tree->boxes[((size_t)1 << d) - 1 + j];
 }
 
-/* A search near a pole, where hundreds of faces meet, takes a tenth of a second. */
 static bool is_cancelled(const struct surface_tree *tree)
 {
     return tree->cancelled && atomic_load_explicit(tree->cancelled, memory_order_relaxed);
@@ -253,6 +236,7 @@ struct near_search {
     struct vec p, n;
     struct closest best[AGREEMENTS]; /* distance: never negative */
     double border;                   /* the least distance of a place where the surface ends */
+    struct made_levels *made;
 };
 
 static double distance_to_box(struct vec p, const struct tree_box *box)
@@ -272,6 +256,13 @@ static double near_limit(const struct near_search *search)
     if (!search->rules)
         return search->best[ANY_SIDE].distance;
     return search->best[SAME_SIDE].distance + search->rules->tolerance;
+}
+
+/* Nor are places farther than this, unless the surface ends there: none of the nearest places would change. */
+static double useful_limit(const struct near_search *search)
+{
+    double limit = near_limit(search), agrees = search->best[AGREES].distance;
+    return agrees < limit ? agrees : limit;
 }
 
 static void take_near(struct near_search *search, size_t leaf, double x, double y,
@@ -296,14 +287,14 @@ static bool is_held(double x, double least, double most, double downhill)
     return (x <= least && downhill < 0) || (x >= most && downhill > 0);
 }
 
-/* Minimises the distance within a rectangle, from (x,y). */
-static void approach(struct near_search *search, const struct rectangle *in, double x, double y)
+/* Minimises the distance within a rectangle, from (x,y). True if the minimum lies inside of it. */
+static bool approach(struct near_search *search, const struct rectangle *in, double x, double y)
 {
     const struct kept_surface *surface = search->tree->surface;
     double x1 = in->x + in->width, y1 = in->y + in->height;
     struct limit_point at;
     for (int step = 0; step < MOST_NEAR_STEPS; step++) {
-        kept_surface_evaluate(surface, in->leaf, x, y, &at);
+        kept_surface_evaluate_again(surface, in->leaf, x, y, search->made, &at);
         struct vec d = vec_sub(at.s, search->p);
         double gx = vec_dot(d, at.su), gy = vec_dot(d, at.sv);
         double a = vec_dot(at.su, at.su), b = vec_dot(at.su, at.sv), c = vec_dot(at.sv, at.sv);
@@ -331,23 +322,62 @@ static void approach(struct near_search *search, const struct rectangle *in, dou
             break;
     }
     if (!isfinite(x + y))
-        return;
-    kept_surface_evaluate(surface, in->leaf, x, y, &at);
+        return false;
+    kept_surface_evaluate_again(surface, in->leaf, x, y, search->made, &at);
     take_near(search, in->leaf, x, y, &at);
+    return x > in->x && x < x1 && y > in->y && y < y1;
 }
 
 static void approach_rest(struct near_search *search, const struct rectangle *in)
 {
     const struct kept_surface *surface = search->tree->surface;
-    struct rest rest = rest_of(surface, in);
-    struct vec d = vec_sub(search->p, rest.vertex.s), n = rest.vertex.n;
+    const struct corner_sector *sector = sector_of(search->tree, in->leaf);
+    struct vec d = vec_sub(search->p, sector->vertex.s), n = sector->vertex.n;
     double away = vec_length(vec_mad(d, -vec_dot(d, n), n)), starts[3][2];
-    take_near(search, in->leaf, 0, 0, &rest.vertex);
-    if (away <= 1e-8 * rest.extent)
+    take_near(search, in->leaf, 0, 0, &sector->vertex);
+    if (away <= 1e-8 * sector->extent)
         return;
-    rest_starts(surface, in, &rest, away, starts);
-    for (int k = 0; k < 3; k++)
-        approach(search, in, starts[k][0], starts[k][1]);
+    corner_rest_starts(sector, surface, in->leaf, away, search->made, starts);
+    bool is_found = false;
+    for (int k = 0; k < 3 && !is_found; k++)
+        is_found = approach(search, in, starts[k][0], starts[k][1]);
+}
+
+/* How far p is from a box along the unit vector n, at least. */
+static double above_box(struct vec p, struct vec n, const struct tree_box *box)
+{
+    const double at[3] = {p.x, p.y, p.z}, by[3] = {n.x, n.y, n.z};
+    double least = 0, most = 0;
+    for (int k = 0; k < 3; k++) {
+        double low = by[k] * ((double)box->least[k] - at[k]);
+        double high = by[k] * ((double)box->most[k] - at[k]);
+        least += smaller(low, high);
+        most += larger(low, high);
+    }
+    return larger(larger(least, -most), 0);
+}
+
+/* A lower bound of the distance from a piece of a CORNER: by the sector of its leaf. */
+static double distance_to_sector(const struct near_search *search, const struct tree_piece *piece)
+{
+    const struct corner_sector *sector = sector_of(search->tree, piece->leaf);
+    double above = above_box(search->p, sector->vertex.n, &piece->box);
+    if (piece->is_rest)
+        above = larger(above, corner_rest_above(sector, search->p));
+    return corner_sector_distance(sector, search->p, above);
+}
+
+static void approach_piece(struct near_search *search, const struct tree_piece *piece)
+{
+    const struct rectangle in = rectangle_of(piece);
+    double limit = piece->at_border ? near_limit(search) : useful_limit(search);
+    if (!(distance_to_box(search->p, &piece->box) < limit) ||
+        (piece->is_corner && !(distance_to_sector(search, piece) < limit)))
+        return;
+    if (piece->is_rest)
+        approach_rest(search, &in);
+    else
+        approach(search, &in, in.x + 0.5 * in.width, in.y + 0.5 * in.height);
 }
 
 static void approach_tree(struct near_search *search)
@@ -362,16 +392,8 @@ static void approach_tree(struct near_search *search)
             continue;
         if (at.depth == tree->depth) {
             size_t end = tree_first(tree, at.depth, at.j + 1);
-            for (size_t i = tree_first(tree, at.depth, at.j); i < end; i++) {
-                const struct tree_piece *piece = &tree->pieces[i];
-                struct rectangle in = rectangle_of(piece);
-                if (!(distance_to_box(search->p, &piece->box) < near_limit(search)))
-                    continue;
-                if (piece->is_rest)
-                    approach_rest(search, &in);
-                else
-                    approach(search, &in, in.x + 0.5 * in.width, in.y + 0.5 * in.height);
-            }
+            for (size_t i = tree_first(tree, at.depth, at.j); i < end; i++)
+                approach_piece(search, &tree->pieces[i]);
             continue;
         }
         struct visit next[2];
@@ -397,15 +419,17 @@ static void find_near(struct near_search *search)
 
 void closest_nearest(const struct surface_tree *tree, struct vec p, struct closest *out)
 {
-    struct near_search search = {.tree = tree, .p = p};
+    struct made_levels made;
+    made_levels_init(&made);
+    struct near_search search = {.tree = tree, .p = p, .made = &made};
     find_near(&search);
     *out = search.best[ANY_SIDE];
 }
 
 static void find_on_side(const struct surface_tree *tree, const struct closest_rules *rules,
-                         struct vec p, struct vec n, struct closest *out)
+                         struct vec p, struct vec n, struct made_levels *made, struct closest *out)
 {
-    struct near_search search = {.tree = tree, .rules = rules, .p = p, .n = n};
+    struct near_search search = {.tree = tree, .rules = rules, .p = p, .n = n, .made = made};
     find_near(&search);
     const struct closest *agrees = &search.best[AGREES], *same = &search.best[SAME_SIDE],
                          *any = &search.best[ANY_SIDE];
@@ -427,7 +451,10 @@ void closest_find(const struct surface_tree *tree, const struct closest_rules *r
     *out = (struct closest){.kind = CLOSEST_NONE, .distance = DBL_MAX};
     if (!tree->n_pieces)
         return;
-    struct search search = {.tree = tree, .rules = rules, .p = p, .n = n, .best = out};
+    struct made_levels made;
+    made_levels_init(&made);
+    struct search search = {
+        .tree = tree, .rules = rules, .p = p, .n = n, .best = out, .made = &made};
     struct vec aside = fabs(n.x) < 0.7 ? (struct vec){1, 0, 0} : (struct vec){0, 1, 0};
     search.across[0] = vec_unit(vec_cross(n, aside));
     search.across[1] = vec_cross(n, search.across[0]);
@@ -445,5 +472,5 @@ void closest_find(const struct surface_tree *tree, const struct closest_rules *r
     if (!is_same)
         meet_tree(&search);
     if (out->kind == CLOSEST_NONE)
-        find_on_side(tree, rules, p, n, out);
+        find_on_side(tree, rules, p, n, &made, out);
 }

@@ -11,69 +11,120 @@ static unsigned levels_of(const struct limit_node *node)
                                        : 1;
 }
 
-static unsigned kept_of(const struct limit_node *node, unsigned most)
+/* CORNERs of that many levels belong to vertices at which ten or more faces meet (corner.c). To make the points of a level
+ * takes a time that grows with the number of faces, and so does the number of searches that come near the vertex: all
+ * levels of such CORNERs are made once, if these bytes have room for them. */
+enum { POLE_LEVELS = 38, POLE_BYTES = 16 << 20 };
+
+/* How many levels of each CORNER are kept. */
+struct keeping {
+    unsigned most;  /* as parts */
+    bool has_poles; /* the points of all levels at poles */
+};
+
+struct counts {
+    size_t n_leaves, n_levels, n_parts;
+};
+
+/* The levels of a node that are parts. */
+static unsigned parts_of(const struct limit_node *node, const struct keeping *keeping)
 {
     unsigned n = levels_of(node);
-    return node->kind == LIMIT_CORNER && n > most ? most : n;
+    return node->kind == LIMIT_CORNER && n > keeping->most ? keeping->most : n;
 }
 
-/* The number of leaves, and of their levels if at most `most` levels of each CORNER are kept. */
-static void count(const struct limit_tables *tables, unsigned most, size_t *n_leaves,
-                  size_t *n_levels)
+/* The levels of a node whose points are kept. */
+static unsigned kept_of(const struct limit_node *node, const struct keeping *keeping)
 {
-    *n_leaves = *n_levels = 0;
+    unsigned n = levels_of(node);
+    bool is_pole = node->kind == LIMIT_CORNER && n >= POLE_LEVELS;
+    return is_pole && keeping->has_poles ? n : parts_of(node, keeping);
+}
+
+static struct counts count(const struct limit_tables *tables, const struct keeping *keeping)
+{
+    struct counts counts = {0, 0, 0};
     for (size_t i = 0; i < tables->n_nodes; i++) {
         if (!limit_has_points(&tables->nodes[i]))
             continue;
-        ++*n_leaves;
-        *n_levels += kept_of(&tables->nodes[i], most);
+        counts.n_leaves++;
+        counts.n_levels += kept_of(&tables->nodes[i], keeping);
+        counts.n_parts += 3 * parts_of(&tables->nodes[i], keeping) + 1;
     }
+    return counts;
 }
 
-static size_t bytes_of(size_t n_leaves, size_t n_levels)
+static size_t bytes_of(const struct counts *counts)
 {
-    return n_leaves * sizeof(struct kept_leaf) + n_levels * sizeof(struct limit_patch);
+    return counts->n_leaves * sizeof(struct kept_leaf) +
+           counts->n_levels * sizeof(struct limit_patch);
+}
+
+/* The largest keeping, whatever the memory. */
+static struct keeping choose_keeping(const struct limit_tables *tables, struct counts *counts)
+{
+    struct keeping keeping = {KEPT_LEVELS, false};
+    *counts = count(tables, &keeping);
+    keeping.has_poles = true;
+    struct counts with_poles = count(tables, &keeping);
+    keeping.has_poles = bytes_of(&with_poles) - bytes_of(counts) <= POLE_BYTES;
+    if (keeping.has_poles)
+        *counts = with_poles;
+    return keeping;
 }
 
 size_t kept_surface_most_bytes(const struct limit_tables *tables, size_t *n_parts)
 {
-    size_t n_leaves, n_levels;
-    count(tables, KEPT_LEVELS, &n_leaves, &n_levels);
-    *n_parts = 3 * n_levels + n_leaves;
-    return bytes_of(n_leaves, n_levels);
+    struct counts counts;
+    choose_keeping(tables, &counts);
+    *n_parts = counts.n_parts;
+    return bytes_of(&counts);
+}
+
+static void list_leaves(struct kept_surface *surface, const struct keeping *keeping)
+{
+    uint32_t level = 0;
+    struct kept_leaf *to = surface->leaves;
+    for (size_t i = 0; i < surface->tables->n_nodes; i++) {
+        const struct limit_node *node = &surface->tables->nodes[i];
+        if (!limit_has_points(node))
+            continue;
+        to->node = (uint32_t)i;
+        to->first_level = level;
+        to->n_levels = (uint8_t)parts_of(node, keeping);
+        to->n_kept = (uint8_t)kept_of(node, keeping);
+        to->corner = (uint32_t)surface->n_corners;
+        surface->n_corners += node->kind == LIMIT_CORNER;
+        level += to->n_kept;
+        to++;
+    }
 }
 
 bool kept_surface_init(struct kept_surface *surface, const struct limit_tables *tables,
                        size_t most_bytes, struct error *error)
 {
     *surface = (struct kept_surface){.tables = tables};
-    unsigned most = KEPT_LEVELS;
-    count(tables, most, &surface->n_leaves, &surface->n_levels);
-    while (most > 1 && bytes_of(surface->n_leaves, surface->n_levels) > most_bytes)
-        count(tables, --most, &surface->n_leaves, &surface->n_levels);
-    if (bytes_of(surface->n_leaves, surface->n_levels) > most_bytes)
+    struct counts counts;
+    struct keeping keeping = choose_keeping(tables, &counts);
+    while (bytes_of(&counts) > most_bytes && (keeping.has_poles || keeping.most > 1)) {
+        keeping.most -= keeping.has_poles ? 0 : 1;
+        keeping.has_poles = false;
+        counts = count(tables, &keeping);
+    }
+    if (bytes_of(&counts) > most_bytes)
         return error_set(error, ERROR_SERVER,
                          "the surface of %zu parts needs %zu MB, more than the %zu MB that a "
                          "computation may take",
-                         surface->n_leaves, bytes_of(surface->n_leaves, surface->n_levels) >> 20,
-                         most_bytes >> 20);
+                         counts.n_leaves, bytes_of(&counts) >> 20, most_bytes >> 20);
+    surface->n_leaves = counts.n_leaves;
+    surface->n_levels = counts.n_levels;
     surface->leaves = calloc(surface->n_leaves + 1, sizeof *surface->leaves);
     surface->levels = calloc(surface->n_levels + 1, sizeof *surface->levels);
     if (!surface->leaves || !surface->levels) {
         kept_surface_finish(surface);
         return error_set(error, ERROR_SERVER, "no memory for the parts of a surface");
     }
-    uint32_t level = 0;
-    size_t leaf = 0;
-    for (size_t i = 0; i < tables->n_nodes; i++) {
-        if (!limit_has_points(&tables->nodes[i]))
-            continue;
-        struct kept_leaf *to = &surface->leaves[leaf++];
-        to->node = (uint32_t)i;
-        to->first_level = level;
-        to->n_levels = (uint8_t)kept_of(&tables->nodes[i], most);
-        level += to->n_levels;
-    }
+    list_leaves(surface, &keeping);
     return true;
 }
 
@@ -86,14 +137,14 @@ void kept_surface_finish(struct kept_surface *surface)
 
 size_t kept_surface_bytes(const struct kept_surface *surface)
 {
-    return bytes_of(surface->n_leaves, surface->n_levels);
+    return bytes_of(&(struct counts){surface->n_leaves, surface->n_levels, 0});
 }
 
 void kept_surface_fill(struct kept_surface *surface, size_t leaf)
 {
     struct kept_leaf *to = &surface->leaves[leaf];
     const struct limit_node *node = kept_node(surface, leaf);
-    for (unsigned k = 0; k < to->n_levels; k++) {
+    for (unsigned k = 0; k < to->n_kept; k++) {
         int n = node->kind == LIMIT_REGULAR ? 0 : (int)k + 1;
         limit_patch_of_level(&surface->levels[to->first_level + k], surface->tables, node, n, 0, 0);
     }
@@ -131,8 +182,21 @@ unsigned kept_surface_parts(const struct kept_surface *surface, size_t leaf,
     return n;
 }
 
-void kept_surface_patch(const struct kept_surface *surface, size_t leaf, double x, double y,
-                        struct limit_patch *patch)
+static void take_made(const struct kept_surface *surface, size_t leaf, int n, double x, double y,
+                      struct made_levels *made, struct limit_patch *patch)
+{
+    int slot = n % MADE_LEVELS;
+    struct limit_patch *level = &made->level[slot];
+    const struct limit_node *node = kept_node(surface, leaf);
+    if (made->node[slot] != node || level->level != n)
+        limit_patch_of_level(level, surface->tables, node, n, x, y);
+    made->node[slot] = node;
+    limit_patch_in_level(patch, level, x, y);
+}
+
+/* Gets the patch that contains local (x,y) of a leaf. `made` may be NULL. */
+static void find_patch(const struct kept_surface *surface, size_t leaf, double x, double y,
+                       struct made_levels *made, struct limit_patch *patch)
 {
     const struct kept_leaf *of = &surface->leaves[leaf];
     const struct limit_node *node = kept_node(surface, leaf);
@@ -146,10 +210,12 @@ void kept_surface_patch(const struct kept_surface *surface, size_t leaf, double 
         x = fmax(x, least);
         y = fmax(y, least);
     }
-    if (n - first < of->n_levels)
+    if (n - first < of->n_kept)
         limit_patch_in_level(patch, &surface->levels[of->first_level + (size_t)(n - first)], x, y);
-    else
+    else if (!made)
         limit_patch_of_level(patch, surface->tables, node, n, x, y);
+    else
+        take_made(surface, leaf, n, x, y, made, patch);
     patch->is_vertex = is_vertex;
 }
 
@@ -157,6 +223,37 @@ struct vec motion_turn(const struct rigid_motion *motion, struct vec v)
 {
     return (struct vec){vec_dot(motion->row[0], v), vec_dot(motion->row[1], v),
                         vec_dot(motion->row[2], v)};
+}
+
+/* A cubic's four Bezier points from those of its uniform B-spline, `stride` apart. */
+static void to_bezier(struct vec *p, int stride)
+{
+    struct vec a = p[0], b = p[stride], c = p[2 * stride], d = p[3 * stride];
+    p[0] = vec_scale(vec_add(vec_mad(a, 4, b), c), 1.0 / 6);
+    p[stride] = vec_scale(vec_mad(c, 2, b), 1.0 / 3);
+    p[2 * stride] = vec_scale(vec_mad(b, 2, c), 1.0 / 3);
+    p[3 * stride] = vec_scale(vec_add(vec_mad(b, 4, c), d), 1.0 / 6);
+}
+
+void kept_surface_net(const struct kept_surface *surface, size_t leaf, const struct kept_part *part,
+                      struct vec net[16])
+{
+    struct limit_patch patch;
+    find_patch(surface, leaf, part->x + 0.5 * part->width, part->y + 0.5 * part->height, NULL,
+               &patch);
+    limit_patch_points(&patch, net);
+    for (int k = 0; k < 4; k++)
+        to_bezier(net + 4 * k, 1);
+    for (int k = 0; k < 4; k++)
+        to_bezier(net + k, 4);
+    const double *origin = patch.node->origin;
+    for (int k = 0; k < 16; k++) {
+        struct vec p = limit_frame_to_world(surface->tables, patch.node, net[k]);
+        p = vec_add(p, (struct vec){origin[0], origin[1], origin[2]});
+        net[k] = surface->is_moved
+                     ? vec_add(motion_turn(&surface->motion, p), surface->motion.shift)
+                     : p;
+    }
 }
 
 static void move(const struct rigid_motion *motion, struct limit_point *at)
@@ -170,8 +267,14 @@ static void move(const struct rigid_motion *motion, struct limit_point *at)
 void kept_surface_evaluate(const struct kept_surface *surface, size_t leaf, double x, double y,
                            struct limit_point *out)
 {
+    kept_surface_evaluate_again(surface, leaf, x, y, NULL, out);
+}
+
+void kept_surface_evaluate_again(const struct kept_surface *surface, size_t leaf, double x,
+                                 double y, struct made_levels *made, struct limit_point *out)
+{
     struct limit_patch patch;
-    kept_surface_patch(surface, leaf, x, y, &patch);
+    find_patch(surface, leaf, x, y, made, &patch);
     limit_patch_evaluate(surface->tables, &patch, out);
     if (surface->is_moved)
         move(&surface->motion, out);

@@ -1,6 +1,6 @@
 /* A surface prepared for many evaluations at any place: its leaves (nodes with points), and the points of their
  * first levels, which tables on demand would make anew for each evaluation. Levels beyond those are made when they
- * are needed. Optionally the surface is moved by a rigid motion.
+ * are needed; at poles all levels are made. Optionally the surface is moved by a rigid motion.
  *
  * kept_surface_fill() may run for different leaves at the same time, everything else of kept_surface_init() and
  * kept_surface_finish() by one thread; a filled surface is read-only, and any thread may read it. */
@@ -24,8 +24,10 @@ struct rigid_motion {
 struct kept_leaf {
     uint32_t node;
     uint32_t first_level; /* in kept_surface.levels */
-    uint8_t n_levels;     /* levels that are kept, from level 1 (or 0) on */
+    uint8_t n_levels;     /* that are parts, from level 1 (or 0) on */
+    uint8_t n_kept;       /* levels whose points are kept: at least these */
     float area;           /* estimated */
+    uint32_t corner;      /* of a CORNER: its number among these */
 };
 
 struct kept_surface {
@@ -33,7 +35,8 @@ struct kept_surface {
     struct kept_leaf *leaves;
     size_t n_leaves;
     struct limit_patch *levels;
-    size_t n_levels;
+    size_t n_levels;  /* whose points are kept */
+    size_t n_corners; /* leaves that are CORNERs */
     bool is_moved;
     struct rigid_motion motion;
 };
@@ -46,7 +49,7 @@ enum { KEPT_LEVELS = 5 };
 bool kept_surface_init(struct kept_surface *surface, const struct limit_tables *tables,
                        size_t most_bytes, struct error *error);
 void kept_surface_finish(struct kept_surface *surface);
-/* The bytes of a surface with KEPT_LEVELS levels of each CORNER, and the largest number of its patches. */
+/* The bytes of a surface that keeps as much as any does, and the number of its parts. */
 size_t kept_surface_most_bytes(const struct limit_tables *tables, size_t *n_parts);
 size_t kept_surface_bytes(const struct kept_surface *surface);
 /* Makes the levels of a leaf and estimates its area. */
@@ -67,14 +70,31 @@ enum { KEPT_PARTS = 3 * KEPT_LEVELS + 1 };
 unsigned kept_surface_parts(const struct kept_surface *surface, size_t leaf,
                             struct kept_part parts[KEPT_PARTS]);
 
-/* Gets the patch that contains local (x,y) of a leaf. */
-void kept_surface_patch(const struct kept_surface *surface, size_t leaf, double x, double y,
-                        struct limit_patch *patch);
-
 /* Evaluates local (x,y) of a leaf, which may be a little beyond [0,1]; derivatives are by x and y. At (0,0) of a CORNER
  * that is the vertex (evaluate.h); nearer to it than its last level, that level's end. */
 void kept_surface_evaluate(const struct kept_surface *surface, size_t leaf, double x, double y,
                            struct limit_point *out);
+
+/* The levels that evaluations have made last, because they are not kept: level n in slot n % MADE_LEVELS. It must not be
+ * copied, because patches point into themselves. */
+enum { MADE_LEVELS = 4 };
+struct made_levels {
+    const struct limit_node
+        *node[MADE_LEVELS]; /* NULL: none; the slot's level is then uninitialised */
+    struct limit_patch level[MADE_LEVELS];
+};
+static inline void made_levels_init(struct made_levels *made)
+{
+    for (int k = 0; k < MADE_LEVELS; k++)
+        made->node[k] = NULL;
+}
+/* As kept_surface_evaluate(); points of levels in `made` are not made again. */
+void kept_surface_evaluate_again(const struct kept_surface *surface, size_t leaf, double x,
+                                 double y, struct made_levels *made, struct limit_point *out);
+
+/* The Bezier net in world coordinates of the patch that is a part of a leaf, and no rest: net[4 j + i]. */
+void kept_surface_net(const struct kept_surface *surface, size_t leaf, const struct kept_part *part,
+                      struct vec net[16]);
 
 struct vec motion_turn(const struct rigid_motion *motion, struct vec v);
 

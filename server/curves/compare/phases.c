@@ -387,7 +387,8 @@ size_t comparison_bytes(const struct limit_tables *const tables[COMPARISON_SIDES
         size_t kept = kept_surface_most_bytes(tables[k], &n_parts);
         /* begin_keep() leaves as much for the other surface and for the trees. */
         sum += (k ? 2 : 3) * kept +
-               n_parts * (PIECES_OF_PART * piece + LEAST_SAMPLES_OF_PART * SAMPLE_BYTES);
+               n_parts * (PIECES_OF_PART * piece + LEAST_SAMPLES_OF_PART * SAMPLE_BYTES) +
+               tables[k]->count[LIMIT_CORNER] * sizeof(struct corner_sector);
     }
     return sum + n_samples * SAMPLE_BYTES;
 }

@@ -23,6 +23,7 @@ void surface_tree_finish(struct surface_tree *tree)
 {
     free(tree->n_pieces_of);
     free(tree->first_piece);
+    free(tree->sectors);
     free(tree->pieces);
     free(tree->boxes);
     *tree = (struct surface_tree){0};
@@ -32,39 +33,8 @@ size_t surface_tree_bytes(const struct surface_tree *tree)
 {
     return (tree->surface->n_leaves + 1) * (sizeof *tree->first_piece + sizeof *tree->n_pieces_of) +
            tree->n_pieces * sizeof *tree->pieces +
+           (tree->sectors ? tree->surface->n_corners * sizeof *tree->sectors : 0) +
            (tree->boxes ? ((size_t)2 << tree->depth) * sizeof *tree->boxes : 0);
-}
-
-/* A cubic's four Bezier points from those of its uniform B-spline, `stride` apart. */
-static void to_bezier(struct vec *p, int stride)
-{
-    struct vec a = p[0], b = p[stride], c = p[2 * stride], d = p[3 * stride];
-    p[0] = vec_scale(vec_add(vec_mad(a, 4, b), c), 1.0 / 6);
-    p[stride] = vec_scale(vec_mad(c, 2, b), 1.0 / 3);
-    p[2 * stride] = vec_scale(vec_mad(b, 2, c), 1.0 / 3);
-    p[3 * stride] = vec_scale(vec_add(vec_mad(b, 4, c), d), 1.0 / 6);
-}
-
-/* The Bezier net in world coordinates of the patch that is a part of a leaf: net[4 j + i]. */
-static void net_of_part(const struct kept_surface *surface, size_t leaf,
-                        const struct kept_part *part, struct vec net[16])
-{
-    struct limit_patch patch;
-    kept_surface_patch(surface, leaf, part->x + 0.5 * part->width, part->y + 0.5 * part->height,
-                       &patch);
-    limit_patch_points(&patch, net);
-    for (int k = 0; k < 4; k++)
-        to_bezier(net + 4 * k, 1);
-    for (int k = 0; k < 4; k++)
-        to_bezier(net + k, 4);
-    const double *origin = patch.node->origin;
-    for (int k = 0; k < 16; k++) {
-        struct vec p = limit_frame_to_world(surface->tables, patch.node, net[k]);
-        p = vec_add(p, (struct vec){origin[0], origin[1], origin[2]});
-        net[k] = surface->is_moved
-                     ? vec_add(motion_turn(&surface->motion, p), surface->motion.shift)
-                     : p;
-    }
 }
 
 /* The largest angle between the mean of the net's differences in one direction and one of them. */
@@ -83,13 +53,8 @@ static double turn_of(const struct vec net[16], int stride, int across)
 }
 
 /* The number of pieces along each side of a part, at most `most`. */
-static unsigned cuts_of(const struct kept_surface *surface, size_t leaf,
-                        const struct kept_part *part, unsigned most)
+static unsigned cuts_of(const struct vec net[16], unsigned most)
 {
-    if (part->is_rest)
-        return 1;
-    struct vec net[16];
-    net_of_part(surface, leaf, part, net);
     double turn = fmax(turn_of(net, 1, 4), turn_of(net, 4, 1));
     unsigned cuts = 1;
     while (cuts < most && turn > MOST_TURN * cuts)
@@ -103,16 +68,18 @@ void surface_tree_divide(struct surface_tree *tree, size_t leaf)
     unsigned n = kept_surface_parts(tree->surface, leaf, parts);
     uint32_t *n_pieces = tree->n_pieces_of[leaf];
     for (unsigned k = 0; k < n; k++) {
-        unsigned cuts = cuts_of(tree->surface, leaf, &parts[k], 1u << (TREE_CUTS - 1));
+        struct vec net[16];
+        if (!parts[k].is_rest)
+            kept_surface_net(tree->surface, leaf, &parts[k], net);
         for (unsigned i = 0; i < TREE_CUTS; i++) {
-            unsigned fewer = cuts < 1u << i ? cuts : 1u << i;
-            n_pieces[i] += fewer * fewer;
+            unsigned cuts = parts[k].is_rest ? 1 : cuts_of(net, 1u << i);
+            n_pieces[i] += cuts * cuts;
         }
     }
 }
 
-/* Numbers the pieces for at most 4^n pieces of a part, and chooses the depth of the tree. Returns the bytes of pieces and
- * boxes; SIZE_MAX if there are too many. */
+/* Numbers the pieces for at most 4^n pieces of a part, and chooses the depth of the tree. Returns the bytes of pieces,
+ * boxes and sectors; SIZE_MAX if there are too many. */
 static size_t lay_out(struct surface_tree *tree, unsigned n)
 {
     size_t total = 0;
@@ -129,7 +96,8 @@ static size_t lay_out(struct surface_tree *tree, unsigned n)
         tree->depth++;
     while (total >> tree->top_depth > PIECES_OF_SUBTREE)
         tree->top_depth++;
-    return total * sizeof *tree->pieces + ((size_t)2 << tree->depth) * sizeof *tree->boxes;
+    return total * sizeof *tree->pieces + ((size_t)2 << tree->depth) * sizeof *tree->boxes +
+           tree->surface->n_corners * sizeof *tree->sectors;
 }
 
 bool surface_tree_allocate(struct surface_tree *tree, size_t most_bytes, struct error *error)
@@ -145,7 +113,8 @@ bool surface_tree_allocate(struct surface_tree *tree, size_t most_bytes, struct 
                          bytes >> 20, most_bytes >> 20);
     tree->pieces = calloc(tree->n_pieces + 1, sizeof *tree->pieces);
     tree->boxes = calloc((size_t)2 << tree->depth, sizeof *tree->boxes);
-    return (tree->pieces && tree->boxes) ||
+    tree->sectors = calloc(tree->surface->n_corners + 1, sizeof *tree->sectors);
+    return (tree->pieces && tree->boxes && tree->sectors) ||
            error_set(error, ERROR_SERVER, "no memory for a surface's tree");
 }
 
@@ -213,11 +182,41 @@ static struct tree_box box_of_rest(const struct kept_surface *surface, size_t le
         double half = 0.5 * rest->width;
         struct kept_part part = {k & 1 ? half : 0, k & 2 ? half : 0, half, half, false};
         struct vec net[16];
-        net_of_part(surface, leaf, &part, net);
+        kept_surface_net(surface, leaf, &part, net);
         for (int i = 0; i < 16; i++)
             grow(&box, vec_add(vertex.s, vec_scale(vec_sub(net[i], vertex.s), 1.1)));
     }
     return box;
+}
+
+/* True if the surface ends at an edge of the leaf. */
+static bool has_border(const struct kept_surface *surface, size_t leaf)
+{
+    static const double middles[4][2] = {{0.5, 0}, {1, 0.5}, {0.5, 1}, {0, 0.5}};
+    for (int edge = 0; edge < 4; edge++)
+        if (kept_surface_at_border(surface, leaf, middles[edge][0], middles[edge][1]))
+            return true;
+    return false;
+}
+
+/* The pieces of a part that is no rest; `piece` has what all pieces of the leaf have in common. Returns their end. */
+static struct tree_piece *fill_part(const struct surface_tree *tree, const struct kept_part *part,
+                                    struct tree_piece piece, struct tree_piece *to)
+{
+    struct vec net[16];
+    kept_surface_net(tree->surface, piece.leaf, part, net);
+    unsigned cuts = cuts_of(net, tree->most_cuts);
+    double side = 1.0 / cuts;
+    piece.width = (float)(side * part->width);
+    piece.height = (float)(side * part->height);
+    for (unsigned i = 0; i < cuts * cuts; i++) {
+        double a = (i % cuts) * side, b = (i / cuts) * side;
+        piece.box = box_of_net(net, a, b, side);
+        piece.x = (float)(part->x + a * part->width);
+        piece.y = (float)(part->y + b * part->height);
+        *to++ = piece;
+    }
+    return to;
 }
 
 void surface_tree_fill(struct surface_tree *tree, size_t leaf)
@@ -226,25 +225,23 @@ void surface_tree_fill(struct surface_tree *tree, size_t leaf)
     struct kept_part parts[KEPT_PARTS];
     unsigned n = kept_surface_parts(surface, leaf, parts);
     struct tree_piece *to = tree->pieces + tree->first_piece[leaf];
+    struct tree_piece piece = {.leaf = (uint32_t)leaf,
+                               .is_corner = kept_node(surface, leaf)->kind == LIMIT_CORNER,
+                               .at_border = has_border(surface, leaf)};
+    if (piece.is_corner)
+        corner_sector_init(&tree->sectors[surface->leaves[leaf].corner], surface, leaf);
     for (unsigned k = 0; k < n; k++) {
         const struct kept_part *part = &parts[k];
-        unsigned cuts = cuts_of(surface, leaf, part, tree->most_cuts);
-        struct vec net[16];
-        if (!part->is_rest)
-            net_of_part(surface, leaf, part, net);
-        for (unsigned i = 0; i < cuts * cuts; i++) {
-            const double side = 1.0 / cuts, a = (i % cuts) * side, b = (i / cuts) * side;
-            *to++ = (struct tree_piece){
-                .box =
-                    part->is_rest ? box_of_rest(surface, leaf, part) : box_of_net(net, a, b, side),
-                .leaf = (uint32_t)leaf,
-                .is_rest = part->is_rest,
-                .x = (float)(part->x + a * part->width),
-                .y = (float)(part->y + b * part->height),
-                .width = (float)(side * part->width),
-                .height = (float)(side * part->height),
-            };
+        if (!part->is_rest) {
+            to = fill_part(tree, part, piece, to);
+            continue;
         }
+        *to = piece;
+        to->is_rest = true;
+        to->box = box_of_rest(surface, leaf, part);
+        to->width = (float)part->width;
+        to->height = (float)part->height;
+        to++;
     }
 }
 

@@ -11,6 +11,7 @@
 #include <stdatomic.h>
 
 #include "server/curves/compare/kept_surface.h"
+#include "server/curves/compare/sector.h"
 
 /* An axis-parallel box: least x, y, z, and largest x, y, z. */
 struct tree_box {
@@ -20,7 +21,9 @@ struct tree_box {
 struct tree_piece {
     struct tree_box box; /* contains the piece */
     uint32_t leaf;
-    bool is_rest; /* the rest about a CORNER's vertex */
+    bool is_rest;   /* the rest about a CORNER's vertex */
+    bool is_corner; /* a part of a CORNER */
+    bool at_border; /* the surface ends at an edge of the leaf */
     float x, y, width,
         height; /* its rectangle of the leaf; all of them are sums of powers of two */
 };
@@ -33,8 +36,9 @@ struct surface_tree {
     const atomic_bool *cancelled;       /* searches end early once it is true; NULL: never */
     /* [n_leaves]: pieces of each leaf if a part has at most 4^n of them. */
     uint32_t (*n_pieces_of)[TREE_CUTS];
-    uint32_t *first_piece; /* [n_leaves] */
-    unsigned most_cuts;    /* along each side of a part: 1, 2, 4 or 8 */
+    uint32_t *first_piece;         /* [n_leaves] */
+    unsigned most_cuts;            /* along each side of a part: 1, 2, 4 or 8 */
+    struct corner_sector *sectors; /* [surface->n_corners] */
     struct tree_piece *pieces;
     size_t n_pieces;
     /* A complete binary tree: the children of node i are 2 i + 1 and 2 i + 2; the node j of depth d has the pieces from
