@@ -19,7 +19,7 @@ SECONDS = float(os.environ.get("SHEEN_FUZZ_S", "0"))
 SESSIONS = 150  # without SHEEN_FUZZ_S
 PATIENCE_S = 10
 FINAL = {wire.HELLO_OK, wire.UPLOAD_STATE, wire.MODEL_INFO, wire.STATS, wire.ERROR, wire.SUPERSEDED,
-         wire.BREAKS, wire.CURVES}
+         wire.BREAKS, wire.CURVES, wire.COMPARED}
 EDGES = (0.0, -0.0, 1.0, -1.0, 0.5, 1e-30, 1e30, -1e300, 5e-324, float("inf"), float("nan"))
 
 
@@ -35,7 +35,7 @@ class Script:
         in_flight = 4 if self.minor == 0 else 16
         for _ in range(noise.randrange(1, in_flight)):
             noise.choice((self.render, self.render, self.render, self.stats, self.query, self.upload,
-                          self.breaks, self.cancel, self.oddity))()
+                          self.computation, self.cancel, self.oddity))()
             if not self.is_right:
                 break
 
@@ -96,7 +96,7 @@ class Script:
             body += field(40, self.one_of(3)) + field(41, noise.randrange(5))
         self.ask(wire.RENDER, body)
 
-    def breaks(self):
+    def computation(self):
         """A computation; before 1.5 it breaks the protocol."""
         noise = self.noise
         if self.minor < 5 and noise.random() < 0.9:
@@ -109,13 +109,24 @@ class Script:
             scene += field(6, field(1, self.one_of(5)))
         if noise.random() < 0.2:
             scene += field(16, noise.choice((0, 1, 60000)))
-        limits = b"".join(field(number, abs(self.number())) for number in (2, 3, 4) if noise.random() < 0.3)
-        if noise.random() < 0.5:
-            self.ask(wire.FIND_BREAKS, field(1, scene) + limits)
-            return
+        noise.choice((self.find_breaks, self.trace_lines, self.compare))(scene)
+
+    def limits(self, numbers):
+        return b"".join(field(number, abs(self.number())) for number in numbers if self.noise.random() < 0.3)
+
+    def find_breaks(self, scene):
+        self.ask(wire.FIND_BREAKS, field(1, scene) + self.limits((2, 3, 4)))
+
+    def trace_lines(self, scene):
+        noise = self.noise
         places = b"".join(field(3, self.number()) for _ in range(noise.choice((0, 0, 1, 3))))
-        tolerance = field(2, abs(self.number())) if noise.random() < 0.7 else b""
-        self.ask(wire.TRACE_LINES, field(1, scene) + tolerance + places + field(4, noise.choice((0, 0, 0, 1))))
+        self.ask(wire.TRACE_LINES, field(1, scene) + self.limits((2,)) + places +
+                 field(4, noise.choice((0, 0, 0, 1))))
+
+    def compare(self, scene):
+        noise = self.noise
+        self.ask(wire.COMPARE, field(1, scene) + field(2, self.model()) + self.limits((3, 4, 5, 6, 7)) +
+                 field(8, noise.choice((0, 0, 1))) + field(9, noise.choice((1000, 1000, 3000, self.one_of(1000)))))
 
     def stats(self):
         self.ask(wire.STATS_QUERY, b"")
