@@ -349,6 +349,64 @@ void judge_parallel(verdict *verdict)
                    "parallel surfaces are not covered");
 }
 
+/* The largest |p| of a surface, by places of a grid that contains all vertices and middles of faces and edges. */
+double farthest(const surface &of)
+{
+    double most = 0;
+    const int n = 8;
+    for (uint32_t face = 0; face < of.tables.n_faces; face++)
+        for (int k = 0; k < (n + 1) * (n + 1); k++) {
+            limit_point at;
+            if (limit_evaluate(&of.tables, face, (double)(k % (n + 1)) / n,
+                               (double)(k / (n + 1)) / n, &at))
+                most = std::fmax(most, vec_length(at.s));
+        }
+    return most;
+}
+
+/* A convex body and the same one larger by the share e. At the body's farthest point, R away from the middle, the normal
+ * points away from the middle; seen from there, the larger body is e R away. Nowhere it is farther along a normal n: let
+ * the line from p meet the larger body at p + D n. Since the body is convex, none of its points q has q.n > p.n, so that
+ * (p + D n).n <= (1 + e) p.n, and D <= e p.n <= e R. Seen from the larger body, the distance is at least as large. All
+ * this is exact too where a cage makes a sphere only nearly. */
+void judge_larger_body(const std::string &name, const loose_cage &cage, double known,
+                       verdict *verdict)
+{
+    const double e = 0.2;
+    loose_cage larger = cage;
+    for (vec3 &p : larger.position)
+        p = (1 + e) * p;
+    surface before(cage), after(larger);
+    double far = farthest(before);
+    if (known > 0)
+        verdict->at_most(std::fabs(far / known - 1), 1e-7, name + ": its farthest point");
+    comparison_setup setup = setup_of(before, after);
+    setup.limit[COMPARISON_DISTANCE] = 1e-3 * before.size();
+    comparison_result result = compare(setup);
+    double found[2] = {result.side[0].figures[COMPARISON_DISTANCE].worst,
+                       result.side[1].figures[COMPARISON_DISTANCE].worst};
+    std::printf("%s, larger by %.1f: %.9f of %.9f, floor %.1e\n", name.c_str(), e, found[0],
+                e * far, result.distance_floor);
+    verdict->at_most(std::fabs(found[0] / (e * far) - 1), 1e-6, name + ": distance");
+    verdict->at_most(1 - found[1] / (e * far), 1e-6, name + ": distance from the larger body");
+    verdict->check(uncovered(result) == 0, name + ": the larger body is covered");
+}
+
+void judge_larger_bodies(verdict *verdict)
+{
+    loose_cage cube, ball;
+    for (int k = 0; k < 8; k++)
+        cube.position.push_back({k & 1 ? 1.0 : -1.0, k & 2 ? 1.0 : -1.0, k & 4 ? 1.0 : -1.0});
+    cube.faces = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
+                  {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+    ball = refined(refined(cube));
+    for (vec3 &p : ball.position)
+        p = normalized(p);
+    judge_larger_body("cube", cube, std::sqrt(0.75),
+                      verdict); /* a corner is at 3/8 + 4/24 - 1/24 */
+    judge_larger_body("sphere", ball, 0, verdict);
+}
+
 /* A vertex of valence n of a flat cage, moved upwards, lifts the surface there by n / (n + 5) of that. */
 void judge_moved_vertex(verdict *verdict)
 {
@@ -614,6 +672,7 @@ int main(int argc, char **argv)
     if (argc > 1)
         judge_equal("car", read_loose(argv[1]), false, &verdict);
     judge_parallel(&verdict);
+    judge_larger_bodies(&verdict);
     judge_moved_vertex(&verdict);
     judge_rotation(&verdict);
     judge_hole(&verdict);
