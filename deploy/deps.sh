@@ -6,7 +6,7 @@ packages="gcc g++ gcc-aarch64-linux-gnu g++-aarch64-linux-gnu libc6-dev-arm64-cr
  libepoxy-dev libegl-dev libegl1 libopengl0 libgl1-mesa-dri glslang-tools libopenimageio-dev libtinygltf-dev
  nlohmann-json3-dev libjansson-dev libzstd-dev zlib1g-dev libturbojpeg0-dev libssl-dev libinih-dev libpng-dev
  fonts-dejavu-core libcmocka-dev libosd-dev libopenexr-dev libembree-dev clang-format cppcheck systemd openssl git
- mandoc zsh fish python3-numpy python3-zstandard mypy"
+ mandoc zsh fish python3-numpy python3-zstandard mypy libxml2-utils"
 [ "${1:-}" = fuzz ] && packages="$packages clang-14 libclang-rt-14-dev"
 missing=
 for package in $packages; do

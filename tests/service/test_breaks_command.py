@@ -8,6 +8,7 @@ import tempfile
 import unittest
 import xml.etree.ElementTree as xml
 
+import junit_schema
 import schema
 from daemon import CUBE, MODELS, SHEEN
 from test_surface import read_png
@@ -134,6 +135,7 @@ class BreaksCommand(unittest.TestCase):
             path = self.write(name, fold(10))
             report = os.path.join(self.folder, "report.xml")
             self.breaks(path, "--junit", report, code=1)
+            junit_schema.check(report)
             with open(report, "rb") as file:
                 suites = xml.fromstring(file.read())
             suite, = suites
@@ -147,6 +149,7 @@ class BreaksCommand(unittest.TestCase):
             self.assertIn("3 edges are over the limit of 0.1 degrees", failed[0][0].get("message"))
             self.assertEqual(len(failed[0][0].text.strip().splitlines()), 3)
         self.breaks(self.smooth, "--junit", report, code=0)
+        junit_schema.check(report)
         suite, = xml.parse(report).getroot()
         self.assertEqual(suite.get("failures"), "0")
         self.breaks(self.folded, "--junit", os.path.join(self.folder, "no", "folder.xml"), code=3)

@@ -10,6 +10,7 @@ import unittest
 import xml.etree.ElementTree as xml
 from html.parser import HTMLParser
 
+import junit_schema
 import schema
 from daemon import CUBE, MODELS, SHEEN
 from png import read_png
@@ -199,6 +200,7 @@ class CompareCommand(Comparing):
             error = pairs[name]["error"]
             self.assertEqual((error["side"], error["code"]), (side, 3))
             self.assertIn(f"the {side} file: ", error["text"])
+        junit_schema.check(report)
         with open(report, "rb") as file:
             suites = {suite.get("name"): suite for suite in xml.fromstring(file.read())}
         self.assertEqual({name: (suite.get("errors"), len(suite.findall("testcase/error")), suite.get("failures") != "0")
@@ -219,7 +221,8 @@ class CompareCommand(Comparing):
         self.compare(old, new, "--server", "unix:/nowhere", code=4)
 
     def junit(self, report, strange):
-        """Valid XML, and names that XML cannot hold."""
+        """Valid by both schemas, and names that XML cannot hold."""
+        junit_schema.check(report)
         with open(report, "rb") as file:
             suites = xml.fromstring(file.read())
         found = {suite.get("name"): suite for suite in suites}
