@@ -121,7 +121,8 @@ const struct command COMMAND_RENDER = {
     .arguments = "MODEL -o FILE [option]...",
     .summary =
         "Renders the reflection lines on a model's limit surface, exact at every pixel.\n"
-        "MODEL is a control cage: OBJ, GLB, or glTF together with the buffer files that it names.",
+        "MODEL is a control cage: OBJ, USD as text (.usda), GLB, or glTF together with the buffer\n"
+        "files that it names.",
     .tables = TABLES,
     .examples =
         "  sheen render hood.obj -o hood.png\n"

@@ -67,9 +67,8 @@ static struct compared_pair *add_pair(struct pairs *pairs, const char *name)
 
 static bool is_model(const char *name)
 {
-    return name[0] != '.' &&
-           (model_format_ends_with(name, ".obj") || model_format_ends_with(name, ".gltf") ||
-            model_format_ends_with(name, ".glb"));
+    enum model_format format;
+    return name[0] != '.' && model_format_of_name(name, &format);
 }
 
 static bool is_folder(const char *path)
@@ -144,8 +143,8 @@ static enum sheen_status find_pairs(struct pairs *pairs, const struct options *o
     for (int side = 0; side < 2 && !status; side++)
         status = add_folder(pairs, paths[side], side, error);
     if (!status && pairs->n == 0)
-        status =
-            failure_set(error, SHEEN_BAD_MODEL, "neither folder has a model (.obj, .gltf, .glb)");
+        status = failure_set(error, SHEEN_BAD_MODEL,
+                             "neither folder has a model (.obj, .gltf, .glb, .usda)");
     if (!status)
         qsort(pairs->list, pairs->n, sizeof(*pairs->list), by_name);
     return status;

@@ -13,12 +13,18 @@ static const char TAG[] = "\n\nt weld 0/0/0\n";
 enum sheen_status weld_tag_append(const char *path, uint8_t **bytes, size_t *n_bytes,
                                   struct sheen_error *error)
 {
-    if (model_format_is_gltf(path, *bytes, *n_bytes))
+    enum model_format format = model_format(path, *bytes, *n_bytes);
+    if (format == MODEL_GLTF)
         return failure_set(
             error, SHEEN_BAD_ARGUMENT,
             "%s: --weld is for OBJ; equal positions inside a mesh of a glTF file are "
             "joined without it",
             path);
+    if (format == MODEL_USD)
+        return failure_set(error, SHEEN_BAD_ARGUMENT,
+                           "%s: --weld is for OBJ; a mesh of a USD file names by index which "
+                           "vertices its faces share",
+                           path);
     uint8_t *longer = realloc(*bytes, *n_bytes + TAG_BYTES);
     if (!longer)
         return failure_set(error, SHEEN_NO_MEMORY, "%s: no memory to add to it", path);

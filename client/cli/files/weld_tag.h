@@ -12,8 +12,8 @@
  *
  * *bytes has *n_bytes bytes, from malloc(); the caller frees it in all cases. On success it may
  * have moved, on failure it is unchanged. `path` tells the format (by its ending first, then by the
- * bytes) and is named in errors. SHEEN_BAD_ARGUMENT if the file is glTF; any other file counts as
- * OBJ. SHEEN_NO_MEMORY when memory is short. */
+ * bytes) and is named in errors. SHEEN_BAD_ARGUMENT if the file is glTF or USD; any other file counts
+ * as OBJ. SHEEN_NO_MEMORY when memory is short. */
 enum sheen_status weld_tag_append(const char *path, uint8_t **bytes, size_t *n_bytes,
                                   struct sheen_error *error);
 

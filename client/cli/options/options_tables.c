@@ -390,8 +390,8 @@ const struct option_row OPTIONS_SCHEDULE[] = {
 const struct option_row OPTIONS_MODEL[] = {
     {"weld", 0, NULL,
      "join vertices of an OBJ file at exactly equal positions; glTF meshes are\n"
-     "always joined. The line 't weld 0/0/0' is appended to the file, and the model\n"
-     "is identified by the SHA-256 of both",
+     "always joined, USD meshes never. The line 't weld 0/0/0' is appended to the\n"
+     "file, and the model is identified by the SHA-256 of both",
      apply_weld, NULL},
     {0},
 };
@@ -488,9 +488,9 @@ const struct option_row OPTIONS_SCENE[] = {
      apply_zoom, NULL},
     {"up", 0, "X,Y,Z",
      "up direction of the model, for camera and light: X,Y,Z, or x, y, z, -x, -y, -z\n"
-     "(default: the file's, which is y for glTF; else a guess: z, or y if the model\n"
-     "is thinner in y by more than 1 %. Give it where the guess is wrong, as for an\n"
-     "upright door)",
+     "(default: the file's, which is y for glTF and upAxis for USD; else a guess: z,\n"
+     "or y if the model is thinner in y by more than 1 %. Give it where the guess is\n"
+     "wrong, as for an upright door)",
      apply_up, "x y z -x -y -z"},
     {"fov", 0, "DEG",
      "vertical field of view, {} (default: 35);\n"

@@ -19,7 +19,7 @@ enum sheen_projection {
 /* Where a model's up direction comes from. */
 enum sheen_up_source {
     SHEEN_UP_GIVEN,   /* the request */
-    SHEEN_UP_FILE,    /* the model's file: y in glTF */
+    SHEEN_UP_FILE,    /* the model's file: y in glTF, upAxis in USD */
     SHEEN_UP_GUESSED, /* guessed: z, or y if the model is thinner in y by more than 1 % */
     SHEEN_UP_UNKNOWN, /* the daemon is too old to tell */
 };

@@ -32,6 +32,8 @@ def weld(name: str, data: bytes) -> bytes:
     """The model with the line that joins vertices at equal positions."""
     if data[:4] == b"glTF" or name.lower().endswith((".gltf", ".glb")):
         raise BadArgument(f"{name}: weld is for OBJ; equal positions inside a mesh of a glTF file are joined without it")
+    if data[:5] == b"#usda" or data[:8] == b"PXR-USDC" or name.lower().endswith((".usda", ".usd", ".usdc", ".usdz")):
+        raise BadArgument(f"{name}: weld is for OBJ; a mesh of a USD file names by index which vertices its faces share")
     return data + WELD_TAG
 
 

@@ -177,3 +177,12 @@ bool cage_builder_hole(struct cage_builder *builder, uint32_t face, uint32_t lin
     cage->hole[cage->n_holes++] = face;
     return true;
 }
+
+bool cage_builder_has_triangles_alone(const struct cage_builder *builder)
+{
+    const struct cage *cage = &builder->cage;
+    for (size_t f = 0; f < cage->n_faces; f++)
+        if (cage->face_start[f + 1] - cage->face_start[f] != 3)
+            return false;
+    return cage->n_faces > 1;
+}

@@ -47,4 +47,8 @@ bool cage_builder_corner(struct cage_builder *builder, const struct cage_corner 
 bool cage_builder_hole(struct cage_builder *builder, uint32_t face, uint32_t line,
                        struct error *error);
 
+/* True if there are faces, more than one, and all are triangles: in a format that has larger faces,
+ * they may not be intended. */
+bool cage_builder_has_triangles_alone(const struct cage_builder *builder);
+
 #endif

@@ -146,16 +146,6 @@ static bool read_statement(struct obj_reader *reader)
     return true;
 }
 
-/* True if all faces are triangles. OBJ can hold larger faces, so the triangles may not be
- * intended. */
-static bool has_triangles_alone(const struct cage *cage)
-{
-    for (size_t f = 0; f < cage->n_faces; f++)
-        if (cage->face_start[f + 1] - cage->face_start[f] != 3)
-            return false;
-    return cage->n_faces > 1;
-}
-
 static bool read_all(struct obj_reader *reader)
 {
     while (reader->text.at < reader->text.end) {
@@ -203,7 +193,7 @@ bool obj_read(struct cage_builder *builder, const void *bytes, size_t size, cons
     if (size >= 3 && memcmp(bytes, "\xef\xbb\xbf", 3) == 0)
         reader.text.at += 3; /* a byte order mark, which some Windows programs write */
     bool ok = read_all(&reader);
-    builder->plain_triangles = has_triangles_alone(&builder->cage);
+    builder->plain_triangles = cage_builder_has_triangles_alone(builder);
     const struct cage *cage = &builder->cage;
     if (ok && cage->n_vertices == 0 && cage->n_faces == 0)
         ok =

@@ -8,6 +8,7 @@
 #include "server/cage/read/gltf/gltf.h"
 #include "server/cage/build/repair.h"
 #include "server/cage/read/obj.h"
+#include "server/cage/read/usd/usd.h"
 #include "server/cage/build/weld.h"
 
 /* The largest length of a name in a message, so that room is left for the reason. */
@@ -21,6 +22,10 @@ static const char *shown_name(const char *name)
     size_t length = strlen(name);
     return length > SHOWN_NAME_BYTES ? name + length - SHOWN_NAME_BYTES : name;
 }
+
+typedef bool reader(struct cage_builder *, const void *, size_t, const char *, struct error *);
+static reader *const READERS[] = {
+    [MODEL_OBJ] = obj_read, [MODEL_GLTF] = gltf_read, [MODEL_USD] = usd_read};
 
 /* Repair follows welding, because it also removes corners that welding has made equal. */
 static bool weld_and_repair(struct cage_builder *builder, const char *name, struct error *error)
@@ -38,10 +43,8 @@ bool cage_read(struct cage *cage, const void *bytes, size_t size, const char *na
     if (size == 0)
         return error_set(error, ERROR_MODEL, "%s: the file is empty", name);
     struct cage_builder builder = {.name = name};
-    bool (*read)(struct cage_builder *, const void *, size_t, const char *, struct error *) =
-        model_format_is_gltf(name, bytes, size) ? gltf_read : obj_read;
-    bool ok = read(&builder, bytes, size, name, error) && weld_and_repair(&builder, name, error) &&
-              cage_check(&builder.cage, name, error);
+    bool ok = READERS[model_format(name, bytes, size)](&builder, bytes, size, name, error) &&
+              weld_and_repair(&builder, name, error) && cage_check(&builder.cage, name, error);
     if (ok) {
         cage_inspect(&builder, name);
         *cage = builder.cage;

@@ -5,10 +5,10 @@
 
 #include "server/cage/cage.h"
 
-/* Reads a cage from the bytes of a file. `name` decides the format by its ending (.obj, .gltf,
- * .glb; else the contents decide), and is used in messages. On success the caller owns *cage, which
- * has passed cage_check(). On failure *cage is empty and needs no cage_finish(); ERROR_MODEL for a
- * bad file, ERROR_SERVER when memory is short. */
+/* Reads a cage from the bytes of a file. `name` decides the format by its ending, or else the
+ * contents do (protocol/model_format.h); it is also used in messages. On success the caller owns
+ * *cage, which has passed cage_check(). On failure *cage is empty and needs no cage_finish();
+ * ERROR_MODEL for a bad file, ERROR_SERVER when memory is short. */
 bool cage_read(struct cage *cage, const void *bytes, size_t size, const char *name,
                struct error *error);
 
