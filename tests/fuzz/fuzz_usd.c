@@ -1,0 +1,8 @@
+/* USD text files. */
+#include "tests/fuzz/cage.h"
+#include "tests/fuzz/fuzz.h"
+
+void fuzz_one(const uint8_t *bytes, size_t size)
+{
+    fuzz_cage(bytes, size, "fuzz.usda");
+}
