@@ -41,6 +41,33 @@ def write_obj(path, cage, tags=(), comment=""):
             out.write(tag + "\n")
 
 
+def write_usd(path, cage, tags, comment):
+    """USD's text form. Tags are those of single edges, vertices and faces, as write_obj() takes them."""
+    kinds = {"crease": [], "corner": [], "hole": []}
+    for tag in tags:
+        _, kind, _, *values = tag.split()
+        kinds[kind].append(values)
+
+    def array(kind, name, values):
+        return "    %s[] %s = [%s]\n" % (kind, name, ", ".join(str(value) for value in values))
+
+    with open(path, "w", newline="\n") as out:
+        out.write('#usda 1.0\n(\n    doc = """%s\n    made by tests/models/make_models.py"""\n    metersPerUnit = 1\n'
+                  '    upAxis = "Z"\n)\n\ndef Mesh "cage"\n{\n' % comment)
+        out.write('    uniform token subdivisionScheme = "catmullClark"\n'
+                  '    uniform token interpolateBoundary = "edgeOnly"\n')
+        out.write(array("point3f", "points", ("(%r, %r, %r)" % p for p in cage.positions)))
+        out.write(array("int", "faceVertexCounts", (len(face) for face in cage.faces)))
+        out.write(array("int", "faceVertexIndices", (v for face in cage.faces for v in face)))
+        out.write(array("int", "creaseIndices", (v for crease in kinds["crease"] for v in crease[:2])))
+        out.write(array("int", "creaseLengths", (2 for _ in kinds["crease"])))
+        out.write(array("float", "creaseSharpnesses", (crease[2] for crease in kinds["crease"])))
+        out.write(array("int", "cornerIndices", (corner[0] for corner in kinds["corner"])))
+        out.write(array("float", "cornerSharpnesses", (corner[1] for corner in kinds["corner"])))
+        out.write(array("int", "holeIndices", (v for hole in kinds["hole"] for v in hole)))
+        out.write("}\n")
+
+
 def fan(faces):
     """FB_ngon_encoding: a fan of triangles for each polygon; two fans in a row have different first vertices."""
     triangles, previous = [], None
@@ -512,6 +539,7 @@ def main():
     write_obj(path("ngons.obj"), ngons(), comment="A closed body of triangles, quads, pentagons, hexagons")
     write_obj(path("tetra.obj"), tetra(), comment="A tetrahedron")
     write_obj(path("creases.obj"), *creases(), comment="A closed body with every kind of tag")
+    write_usd(path("creases.usda"), *creases(), comment="A closed body with every kind of tag")
     cage, tags = creases()
     write_obj(path("chaikin.obj"), cage, tags + ["t creasemethod 0/0/1 chaikin"],
               comment="The same body and tags, creases by Chaikin's rule")

@@ -348,6 +348,29 @@ static void test_same(void **state)
     assert_true(n_read > N_CAGES * 9 / 10);
 }
 
+/* Reads a file of the repository. */
+static void read_model(struct cage *cage, const char *path)
+{
+    static char bytes[1 << 16];
+    FILE *file = fopen(path, "rb");
+    assert_non_null(file);
+    size_t size = fread(bytes, 1, sizeof bytes, file);
+    fclose(file);
+    read_bytes(cage, bytes, size, path);
+}
+
+static void test_model(void **state)
+{
+    (void)state;
+    struct cage usd, obj;
+    read_model(&usd, "tests/models/creases.usda");
+    read_model(&obj, "tests/models/creases.obj");
+    assert_true(usd.n_creases > 0 && usd.n_corners > 0 && usd.n_holes > 0);
+    expect_equal(&usd, &obj);
+    cage_finish(&usd);
+    cage_finish(&obj);
+}
+
 /* --- transforms */
 
 typedef long double matrix[4][4]; /* for points as columns */
@@ -563,6 +586,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_same),
+        cmocka_unit_test(test_model),
         cmocka_unit_test(test_transforms),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
