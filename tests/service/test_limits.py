@@ -468,7 +468,8 @@ class Polygons(unittest.TestCase):
         frames = self.polygons(clients, sheets[0], 4)
         self.assertEqual(len(set(frames)), 1)
         used = clients[0].stats()[23][0] - before
-        self.assertGreaterEqual(used, 2 * of_each)
+        # `before` may count a reply of some kilobytes that was sent, but not freed yet
+        self.assertGreater(used, 1.95 * of_each)
         self.assertLess(used, 2.1 * of_each)
         self.polygons(clients[:1], sheets[1], 4)
         self.assertLess(clients[0].stats()[23][0], before + 4 * of_each)
