@@ -23,6 +23,10 @@ enum frame_plane {
 
 struct frame_request {
     uint32_t width_px, height_px;
+    /* The diagonal of the model's box, by which the camera (has_chosen_camera) and lights were chosen that
+     * the request leaves out. */
+    double model_size;
+    bool has_chosen_camera;
     struct camera camera;
     struct lines lines;
     struct light lights[MAX_LIGHTS]; /* the first lies over the second, and so on */

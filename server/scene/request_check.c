@@ -49,7 +49,7 @@ static bool check_window(const struct frame_request *request, struct error *erro
                        window->width_px, window->height_px)));
 }
 
-static bool check_camera(const struct camera *camera, struct error *error)
+static bool check_camera_place(const struct camera *camera, struct error *error)
 {
     double view[3];
     if (!check_point(camera->eye, "camera: eye", error) ||
@@ -64,10 +64,25 @@ static bool check_camera(const struct camera *camera, struct error *error)
         return error_set(error, ERROR_REQUEST,
                          "camera: up is zero or parallel to the line from eye to target: choose "
                          "another (--up 0,1,0)");
+    return true;
+}
+
+static bool check_lens(const struct camera *camera, struct error *error)
+{
     return camera->kind == CAMERA_PERSPECTIVE
                ? check_number(camera->fov_deg, RANGE_FOV, "camera: fov", error)
                : check_number(camera->ortho_height, RANGE_ORTHO_HEIGHT,
                               "camera: orthographic height", error);
+}
+
+/* What is wrong with a camera or light that was chosen by the model is the model's size. */
+static bool blame_model(const struct frame_request *request, const char *what, struct error *error)
+{
+    const struct error why = *error;
+    return error_set(error, ERROR_REQUEST,
+                     "the model's box has a diagonal of %.9g units, for which no %s can be chosen "
+                     "(%s): scale the model, or give the %s",
+                     request->model_size, what, why.text, what);
 }
 
 static bool check_light(const struct light *light, struct error *error)
@@ -183,13 +198,17 @@ bool request_check(const struct frame_request *request, uint32_t max_width_px,
         return error_set(error, ERROR_REQUEST, "no light: there must be one");
     if (!check_number(request->n_lights, RANGE_LIGHTS, "the number of lights", error))
         return false;
-    if (!check_window(request, error) || !check_camera(&request->camera, error) ||
-        !check_lines(&request->lines, error))
+    if (!check_window(request, error))
+        return false;
+    if (!check_camera_place(&request->camera, error))
+        return request->has_chosen_camera && blame_model(request, "camera", error);
+    if (!check_lens(&request->camera, error) || !check_lines(&request->lines, error))
         return false;
     for (uint32_t i = 0; i < request->n_lights; i++)
-        if (!check_light(&request->lights[i], error) ||
-            !check_pattern(&request->lights[i].pattern, error) ||
-            !check_eye_off_light(request, &request->lights[i], error))
+        if (!check_light(&request->lights[i], error))
+            return request->lights[i].is_chosen && blame_model(request, "light", error);
+        else if (!check_pattern(&request->lights[i].pattern, error) ||
+                 !check_eye_off_light(request, &request->lights[i], error))
             return false;
     return check_colour(request->miss, "miss", error) &&
            check_colour(request->empty, "empty", error) &&

@@ -97,6 +97,7 @@ struct light {
     enum light_kind kind;
     double centre[3], u[3], v[3];
     bool one_sided; /* seen only by rays that run against u x v; else from both sides */
+    bool is_chosen; /* its place was chosen by the model's box (defaults.h) */
     struct pattern pattern;
 };
 

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "protocol/messages/message_values.h"
+#include "protocol/ranges.h"
 #include "server/scene/defaults.h"
 
 _Static_assert((int)PLANE_COLOUR == (int)sheen_Plane_PLANE_COLOUR &&
@@ -105,7 +106,11 @@ void scene_read_request(const sheen_Render *render, const struct scene_subject *
         .n_lights = render->lights_count ? render->lights_count : 1,
         .surface = {(enum surface_kind)render->surface, render->surface_level},
     };
-    double up[3];
+    double up[3], diagonal[3];
+    for (int i = 0; i < 3; i++)
+        diagonal[i] = subject->tables->box_max[i] - subject->tables->box_min[i];
+    request->model_size = range_length(diagonal);
+    request->has_chosen_camera = !asked->has_eye;
     /* A window leaves the camera of the picture as it is. */
     const sheen_Window *window = &render->window;
     uint32_t width_px = render->has_window ? window->width_px : render->width_px;

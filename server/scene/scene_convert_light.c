@@ -69,6 +69,7 @@ void scene_read_light(const sheen_Light *from, const struct scene_subject *subje
         message_read_vec3(&from->u, to->u);
         message_read_vec3(&from->v, to->v);
     } else {
+        to->is_chosen = true;
         scene_default_light(subject->tables->box_min, subject->tables->box_max, up, to);
     }
     to_pattern(from->has_pattern ? &from->pattern : &default_pattern, &to->pattern);

@@ -32,9 +32,9 @@ def png(side):
 
 def mixed_load(daemon, seed, ends, done):
     """One client: models, pictures of all sizes and kinds; who is refused goes on. Returns when `ends` has come, with
-    the sizes of its pictures added to `done`."""
+    the sizes of its pictures added to `done`; None is added at the end, if nothing failed."""
     noise = random.Random(seed)
-    with Client(daemon.unix, minor=1) as client:
+    with Client(daemon.unix, minor=1, timeout=300) as client:
         while time.monotonic() < ends:
             try:
                 model = client.upload(noise.choice((CUBE, grid(noise.randrange(2, 90)))), "a.obj")
@@ -49,6 +49,7 @@ def mixed_load(daemon, seed, ends, done):
                 if refusal.code not in (wire.ERROR_TOO_BIG, wire.ERROR_OVERLOADED, wire.ERROR_MODEL, wire.ERROR_IMAGE,
                                         wire.ERROR_REQUEST, wire.ERROR_UNKNOWN_MODEL):
                     raise
+    done.append(None)
 
 
 class Resident(unittest.TestCase):
@@ -114,6 +115,7 @@ class Resident(unittest.TestCase):
                 while any(client.is_alive() for client in clients):
                     most_kb = max(most_kb, resident_kb(daemon.process.pid))
                     time.sleep(0.01)
-                self.assertGreater(len(done), 5)  # and not all of it refused
+                self.assertEqual(done.count(None), len(clients))
+                self.assertGreater(len(done), 8)  # and not all of it refused
                 self.assertLess(most_kb, (DAEMON_MIB + mib) * 1024 * 1.15)
                 self.assertEqual(daemon.stop(), 0)

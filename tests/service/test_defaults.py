@@ -36,6 +36,12 @@ def camera(eye=None, target=None, fov=None, view=None, zoom=None):
                                   if value is not None))
 
 
+def cube_of(size):
+    return b"".join(b"v %g %g %g\n" % (x * size, y * size, z * size)
+                    for z in (-1, 1) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))) + \
+        b"f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n"
+
+
 class Picture:
     """The planes of a frame as lists of pixels; None for a pixel that shows nothing."""
 
@@ -159,6 +165,21 @@ class Defaults(DaemonCase):
         fill, touches = picture.fill()
         self.assertGreaterEqual(fill, 0.85)
         self.assertFalse(touches)
+
+    def test_a_model_of_no_usual_size(self):
+        """Where camera or light that are chosen by the model would be out of range, the model's size is told."""
+        for size, what in ((9e29, "camera"), (1e29, "light"), (3e18, "light"), (1e-20, "light")):
+            model = self.client.upload(cube_of(size), "cube.obj")
+            with self.subTest(size=size), self.assertRaises(wire.Refused) as caught:
+                self.client.render(model)
+            self.assertEqual(caught.exception.code, wire.ERROR_REQUEST)
+            self.assertRegex(caught.exception.text, rf"^the model's box has a diagonal of [\d.e+-]+ units, for which no "
+                                                    rf"{what} can be chosen \({what}: .*\): scale the model, or give")
+            told = float(caught.exception.text.split()[7])
+            self.assertTrue(size < told < 3.5 * size, told)
+        given = wire.field(5, b"".join(wire.field(k, vec3(v)) for k, v in
+                                       ((1, (0, 0, 2e19)), (2, (1e17, 0, 0)), (3, (0, 1e17, 0)))))
+        self.client.render(self.client.upload(cube_of(3e18), "cube.obj"), extra=given)
 
     def test_target_alone(self):
         model = self.upload(os.path.join(MODELS, "body.obj"))
