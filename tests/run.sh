@@ -116,7 +116,7 @@ shapes_of() { # pattern
 
 unit() {
     # Mesa compiles without LLVM's optimisations: unit tests draw many kinds of small frames, for which compiling takes
-    # longer than drawing. test_native_frames takes 58 s of processors, else 126 (empty cache). The oracles' rows on
+    # longer than drawing. test_native_frames takes half of the processor time (empty cache). The oracles' rows on
     # Mesa draw more, and keep the optimisations.
     local -x GALLIVM_PERF=nopt LP_NATIVE_VECTOR_WIDTH=128
     for test in tests/unit/test_*.c; do
