@@ -34,7 +34,7 @@ def mixed_load(daemon, seed, ends, done):
     """One client: models, pictures of all sizes and kinds; who is refused goes on. Returns when `ends` has come, with
     the sizes of its pictures added to `done`; None is added at the end, if nothing failed."""
     noise = random.Random(seed)
-    with Client(daemon.unix, minor=1, timeout=300) as client:
+    with Client(daemon.unix, minor=1, timeout=3600) as client:
         while time.monotonic() < ends:
             try:
                 model = client.upload(noise.choice((CUBE, grid(noise.randrange(2, 90)))), "a.obj")
