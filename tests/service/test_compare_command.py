@@ -1,7 +1,9 @@
 """sheen compare: exit codes, limits, folders, JSON by its schema, JUnit and markdown, with files of strange names. The
 numbers themselves are judged by tests/oracle/test_comparison.cpp."""
+import base64
 import hashlib
 import json
+import math
 import os
 import shutil
 import subprocess
@@ -239,16 +241,19 @@ class CompareCommand(Comparing):
 
 
 class Page(HTMLParser):
-    """What a page refers to, and what a server that forbids scripts and inline styles would not show."""
+    """What a page refers to, and what a server that forbids scripts and inline styles would not show. Scripts of their own
+    files do no harm there."""
 
     def __init__(self, text):
         super().__init__()
-        self.files, self.forbidden, self.text = set(), [], ""
+        self.files, self.forbidden, self.text, self.images = set(), [], "", []
         self.feed(text)
 
     def handle_starttag(self, tag, attrs):
         self.files |= {value for name, value in attrs if name == "src" or (tag, name) == ("link", "href")}
-        if tag in ("script", "style", "iframe") or any(name == "style" or name.startswith("on") for name, _ in attrs):
+        self.images += [value for name, value in attrs if (tag, name) == ("img", "src")]
+        is_inline = tag == "script" and not any(name == "src" for name, _ in attrs)
+        if is_inline or tag in ("style", "iframe") or any(name == "style" or name.startswith("on") for name, _ in attrs):
             self.forbidden.append((tag, attrs))
 
     def handle_data(self, data):
@@ -273,7 +278,7 @@ class Report(Comparing):
 
     def test_pictures_of_a_change(self):
         page, colours = self.report(self.flat, self.lifted, code=1)
-        self.assertEqual(len(page.files), 2 + 4 * 4)
+        self.assertEqual(len(page.files), 3 + 4 * 4)
         self.assertIn("lifted.obj: differs", page.text)
         for kind in ("angle", "distance"):
             found = colours(f"p0-v0-{kind}.png")
@@ -287,6 +292,68 @@ class Report(Comparing):
     def test_a_missing_face_is_magenta(self):
         _, colours = self.report(self.flat, self.write("open.obj", sheet(without=(2, 2))), code=1)
         self.assertIn(b"\xff\0\xff", colours("p0-v0-angle.png"))
+
+    def test_the_aligned_surface_is_shown_where_it_was_moved_to(self):
+        with open(os.path.join(MODELS, "body.obj"), encoding="utf-8") as file:
+            lines = file.read().splitlines()
+        c, s, moved = math.cos(0.02), math.sin(0.02), []
+        for line in lines:
+            if line.startswith("v "):
+                x, y, z = map(float, line.split()[1:4])
+                line = f"v {c * x - s * y + 0.02!r} {s * x + c * y!r} {z - 0.01!r}"
+            moved.append(line)
+        old, new = self.write("body.obj", "\n".join(lines)), self.write("moved.obj", "\n".join(moved))
+        views = self.write("view.txt", "--eye 3,-4,2 --target 0,0,0\n")
+        arguments = (old, new, "--limit", "rotation_deg=off", "--line-eye", "9,1,5", "--views", views)
+
+        def near_black(name):
+            """The share of a map's surface that shows less than an eighth of its scale."""
+            _, _, rows = read_png(os.path.join(self.folder, "report", name))
+            pixels = [bytes(row[i:i + 3]) for row in rows for i in range(0, len(row), 3)]
+            surface = [pixel for pixel in pixels if pixel != b"\x9a\x9a\x9a"]
+            self.assertGreater(len(surface), 5000)
+            return sum(max(pixel) < 100 and pixel[0] < 30 for pixel in surface) / len(surface)
+
+        self.report(*arguments, code=1)
+        self.assertLess(max(near_black(f"p0-v0-{kind}.png") for kind in ("angle", "distance")), 0.9)
+        page, _ = self.report(*arguments, "--align", code=0)
+        self.assertEqual(page.text.count("new, moved onto old"), 2)
+        self.assertGreater(min(near_black(f"p0-v0-{kind}.png") for kind in ("angle", "distance")), 0.97)
+        rows = [read_png(os.path.join(self.folder, "report", f"p0-v0-{which}.png"))[2] for which in ("old", "new")]
+        differing = sum(abs(a - b) > 8 for x, y in zip(*rows) for a, b in zip(x, y))
+        self.assertLess(differing, 0.01 * sum(map(len, rows[0])))
+
+    def test_one_file(self):
+        path = os.path.join(self.folder, "one.html")
+        _, _ = self.report(self.flat, self.lifted, "--html", path, code=1)
+        with open(path, encoding="utf-8") as file:
+            page = Page(file.read())
+        self.assertEqual(set(page.files), set(page.images))  # nothing else is loaded
+        pictures = [base64.b64decode(image.removeprefix("data:image/png;base64,"), validate=True)
+                    for image in page.images]
+        files = []
+        with open(os.path.join(self.folder, "report", "index.html"), encoding="utf-8") as file:
+            for name in Page(file.read()).images:
+                with open(os.path.join(self.folder, "report", name), "rb") as picture:
+                    files.append(picture.read())
+        self.assertEqual(pictures, files)
+        self.assertEqual([tag for tag, _ in page.forbidden], ["style", "script"])
+        self.assertIn("lifted.obj: differs", page.text)
+
+    def test_views(self):
+        views = self.write("views.txt", "# a comment\n\n--view front --up 0,0,1\n--eye 3,3,9 --target 3,3,0 --fov 40\n")
+        page, colours = self.report(self.flat, self.lifted, "--views", views, code=1)
+        self.assertEqual(len(page.files), 3 + 2 * 4)
+        self.assertIn("--eye 3,3,9 --target 3,3,0 --fov 40", page.text)
+        self.assertGreater(len(colours("p0-v1-distance.png")), 10)
+        report = ("--report", os.path.join(self.folder, "report"))
+        for text, words in (("--view front\n--light tunnel\n", "line 2: "), ("--view nowhere", "line 1: --view 'nowhere'"),
+                            ("--eye 1,2,3", "needs a --target"), ("front", "argument too many"), ("# nothing\n", "no view"),
+                            ("--view front\n" * 65, "more than 64 views"), ("#" * 1000, "line 1: is too long")):
+            wrong = self.write("wrong.txt", text)
+            self.assertIn(words, self.compare(self.flat, self.flat, *report, "--views", wrong, code=2).stderr)
+        self.assertIn("--report or --html", self.compare(self.flat, self.flat, "--views", views, code=2).stderr)
+        self.compare(self.flat, self.flat, *report, "--views", os.path.join(self.folder, "missing"), code=2)
 
     def test_strange_names_and_bad_folders(self):
         strange = self.write("a<b>&\"c\"'\x01.obj", sheet())

@@ -275,7 +275,7 @@ static enum sheen_status write_text(struct client *client, const char *path, cha
 }
 
 static enum sheen_status print(struct client *client, const struct options *options,
-                               const struct pairs *pairs)
+                               const struct views *views, const struct pairs *pairs)
 {
     enum sheen_status status = SHEEN_OK;
     size_t n_bytes = 0;
@@ -289,7 +289,9 @@ static enum sheen_status print(struct client *client, const struct options *opti
         status = write_text(client, options->markdown, text, n_bytes);
     }
     if (!status && options->report)
-        status = report_write(client, options, pairs->list, pairs->n);
+        status = report_write_folder(client, options, views, pairs->list, pairs->n);
+    if (!status && options->html)
+        status = report_write_file(client, options, views, pairs->list, pairs->n);
     progress_clear(&client->progress);
     if (!status && options->json) {
         struct json json = {.out = stdout};
@@ -307,11 +309,14 @@ static int run(const struct options *given)
     const struct options *options = &own;
     struct client client = {.session = NULL};
     struct pairs pairs = {.list = NULL};
-    const char *const files[] = {options->junit, options->markdown};
+    struct views views;
+    const char *const files[] = {options->junit, options->markdown, options->html};
     enum sheen_status status = find_pairs(&pairs, options, &client.error);
     for (size_t i = 0; i < sizeof(files) / sizeof(*files) && !status; i++)
         if (files[i])
             status = file_check_writable(files[i], &client.error);
+    if (!status)
+        status = views_read(options->views, &views, &client.error);
     if (pairs.is_folders)
         own.model = NULL; /* a bad first model must not keep the session from others */
     if (!status)
@@ -319,7 +324,7 @@ static int run(const struct options *given)
     if (!status)
         status = compare_all(&client, options, &pairs);
     if (!status)
-        status = print(&client, options, &pairs);
+        status = print(&client, options, &views, &pairs);
     if (!status)
         status = first_failure(&client, &pairs);
     bool differs = comparison_count(pairs.list, pairs.n, COMPARISON_SAME) < pairs.n;
@@ -365,6 +370,18 @@ static bool apply_report(struct options *options, const char *value, char *why)
     return *value || options_refuse(why, "must be a folder");
 }
 
+static bool apply_html(struct options *options, const char *value, char *why)
+{
+    options->html = value;
+    return *value || options_refuse(why, "must be a file");
+}
+
+static bool apply_views(struct options *options, const char *value, char *why)
+{
+    options->views = value;
+    return *value || options_refuse(why, "must be a file");
+}
+
 static bool apply_deadline(struct options *options, const char *value, char *why)
 {
     return options_whole(&RANGES[RANGE_DEADLINE], value, &options->request.deadline_ms, why);
@@ -374,6 +391,8 @@ static bool check(struct options *options, char *why)
 {
     if (!options->argument)
         return options_refuse(why, "a second model or folder, NEW, is missing");
+    if (options->views && !options->report && !options->html)
+        return options_refuse(why, "--views are those of --report or --html");
     return options_check_scene(options, why);
 }
 
@@ -402,8 +421,15 @@ static const struct option_row ROWS[] = {
      apply_markdown, NULL},
     {"report", 0, "FOLDER",
      "write pages with pictures of both models in four views and maps of\n"
-     "their differences, which a browser shows without scripts",
+     "their differences, which a browser shows without scripts; with scripts\n"
+     "all pictures of a view are zoomed together",
      apply_report, NULL},
+    {"html", 0, "FILE", "write the same as one file, which needs no other", apply_html, NULL},
+    {"views", 0, "FILE",
+     "the views of --report and --html: on each line the options of a camera\n"
+     "as of this command, --eye, --target, --view, --zoom, --up, --fov, --ortho;\n"
+     "# begins a comment (default: four around the model)",
+     apply_views, NULL},
     {"deadline", 0, "MS",
      "give up a pair after this time, {}\n(default: none). It is checked between steps of "
      "some\nmilliseconds: what is computed within the first of them is answered",

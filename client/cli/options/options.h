@@ -71,6 +71,8 @@ struct options {
     const char *junit;                      /* file of a JUnit report; NULL: none */
     const char *markdown;                   /* compare: file of a summary; NULL: none */
     const char *report;                     /* compare: folder; NULL: none */
+    const char *html;                       /* compare: file of the report; NULL: none */
+    const char *views;                      /* compare: file of the report's views; NULL: none */
     struct comparison_limit compare_limits[COMPARISON_ITEMS];
     bool align;                               /* compare */
     struct sheen_curve_options curve_options; /* lines; its `at` is not set */

@@ -81,23 +81,34 @@ void canvas_text(struct canvas *canvas, uint32_t x, uint32_t y, uint32_t x_end, 
         }
 }
 
-enum sheen_status canvas_write_png(const struct canvas *canvas, const char *path,
-                                   struct sheen_error *error)
+enum sheen_status canvas_png(const struct canvas *canvas, uint8_t **file, size_t *n_bytes,
+                             struct sheen_error *error)
 {
     png_image image = {.version = PNG_IMAGE_VERSION,
                        .width = canvas->width_px,
                        .height = canvas->height_px,
                        .format = PNG_FORMAT_RGB};
     png_alloc_size_t bytes = PNG_IMAGE_PNG_SIZE_MAX(image); /* an upper bound for any pixels */
-    uint8_t *file = malloc(bytes);
-    if (!file)
+    *file = malloc(bytes);
+    if (!*file)
         return failure_set(error, SHEEN_NO_MEMORY, "no memory for a picture of %zu bytes",
                            (size_t)bytes);
-    enum sheen_status status;
-    if (png_image_write_to_memory(&image, file, &bytes, 0, canvas->rgb, 0, NULL))
-        status = file_write(path, file, bytes, error);
-    else
-        status = failure_set(error, SHEEN_BAD_IMAGE, "%s: %s", path, image.message);
+    *n_bytes = bytes;
+    if (png_image_write_to_memory(&image, *file, n_bytes, 0, canvas->rgb, 0, NULL))
+        return SHEEN_OK;
+    free(*file);
+    *file = NULL;
+    return failure_set(error, SHEEN_BAD_IMAGE, "a picture: %s", image.message);
+}
+
+enum sheen_status canvas_write_png(const struct canvas *canvas, const char *path,
+                                   struct sheen_error *error)
+{
+    uint8_t *file = NULL;
+    size_t n_bytes = 0;
+    enum sheen_status status = canvas_png(canvas, &file, &n_bytes, error);
+    if (!status)
+        status = file_write(path, file, n_bytes, error);
     free(file);
     return status;
 }

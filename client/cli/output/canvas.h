@@ -32,6 +32,9 @@ void canvas_paint(struct canvas *canvas, uint32_t x, uint32_t y, const uint8_t r
 void canvas_text(struct canvas *canvas, uint32_t x, uint32_t y, uint32_t x_end, uint32_t scale,
                  const char *text);
 
+/* The bytes of a PNG file, malloc'd. SHEEN_NO_MEMORY or SHEEN_BAD_IMAGE; *file is then NULL. */
+enum sheen_status canvas_png(const struct canvas *canvas, uint8_t **file, size_t *n_bytes,
+                             struct sheen_error *error);
 /* Writes the file whole or not at all, by file_write(). */
 enum sheen_status canvas_write_png(const struct canvas *canvas, const char *path,
                                    struct sheen_error *error);
