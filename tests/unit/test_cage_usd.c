@@ -39,10 +39,12 @@ static void test_forms(void **state)
             "def Mesh \"m }\" ( kind = 'x' customData = { string s = \"\\\"}\" } )\n{\n"
             "PointFloat[] points = [(0,+0,-0),(1.,0,0),(20e-1,0,0),(0,.1e1,0),(1,1,0),(2,1,0)]\n"
             "int[] faceVertexCounts = [4, 4]\nint[] faceVertexIndices = [0,1,4,3,1,2,5,4]\n"
-            "asset a = @./}.png@ ( doc = \"(\" )\nasset b = @@@}@x@@@\nrel r = </a/b.c>\n"
+            "asset a = @./}.png@ ( doc = \"(\" )\nasset b = @@@}@x\\@@@ [@@@@\nrel r = </a/b.c>\n"
             "add rel s = [</a>, </b>]\ncustom token t.connect = </a.b>\nfloat unset\n"
             "uniform token[] u = None\ncolor3f[] primvars:displayColor = [(1, 0, 0)] ( "
             "interpolation = \"constant\" )\nfloat f.timeSamples = { 1: 2, -3: None, }\n"
+            "double d.spline = { bezier, 0: 1 & 2; pre (8, -0); post held, }\ntoken visibility = "
+            "\"visible\"\n"
             "reorder properties = [\"a\"]\nint[] primvars:st:indices = []\n}\n"
             "reorder rootPrims = [\"m\"]\n",
         /* A value counts before samples, samples before None, and the later value. */
@@ -331,6 +333,10 @@ static void test_places(void **state)
             "matrix4d xformOp:transform = ( (0,1,0,0), (-1,0,0,0), (0,0,1,0), (5,6,7,1) )\n" ORDER(
                 "\"xformOp:transform\"")),
         4, 8, 7);
+    /* Rounding in its last column is passed over. */
+    expect_corner(PLACED("matrix4d xformOp:transform = ( (1,0,0,1e-17), (0,1,0,0), (0,0,1,0), "
+                         "(1,1,1,0.9999999999999998) )\n" ORDER("\"xformOp:transform\"")),
+                  3, 2, 1);
     expect_corner(PLACED("double xformOp:translateY = 3\ndouble xformOp:scaleX:a = 4\n" ORDER(
                       "\"xformOp:scaleX:a\", \"xformOp:translateY\"")),
                   8, 4, 0);

@@ -209,8 +209,8 @@ static const struct {
      AT(2) "all meshes are invisible; the first is 'a'"},
     {USD "def Mesh \"a\" { uniform token purpose = \"guide\" }\n",
      AT(2) "all meshes are of purpose guide or proxy; the first is 'a'"},
-    {USD "def Mesh \"a\" { token visibility = \"hidden\" }\n",
-     AT(2) "visibility is 'hidden', needs one of inherited, invisible"},
+    {USD "def Mesh \"a\" { uniform token purpose = \"hidden\" }\n",
+     AT(2) "purpose is 'hidden', needs one of default, render, proxy, guide"},
     {USD "over \"a\" {\n" USD_MESH(USD_PAIR) "}\n",
      "part.usda: all meshes are in prims that are inactive, over or class"},
 };

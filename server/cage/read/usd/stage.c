@@ -71,15 +71,26 @@ static bool has_transform(const struct usd_prim *prim)
 
 /* --- what a prim inherits and hands on */
 
+/* True if visibility is "invisible"; any other value hides nothing (UsdGeomImageable). */
+static bool is_invisible(const struct usd_values *values, bool *is)
+{
+    struct usd_text text = usd_value(values, USD_VISIBILITY);
+    struct usd_token token;
+    if (text.at && !usd_next(&text, &token))
+        return false;
+    *is = text.at && usd_text_is(&token, "invisible");
+    return true;
+}
+
 static bool read_visibility(struct state *state, const struct usd_values *values)
 {
-    static const char *const visibilities[] = {"inherited", "invisible"};
     static const char *const purposes[] = {"default", "render", "proxy", "guide"};
-    size_t visibility = 0, purpose = state->purpose;
-    if (!usd_choose(values, USD_VISIBILITY, visibilities, 2, "inherited, invisible", &visibility) ||
+    size_t purpose = state->purpose;
+    bool invisible;
+    if (!is_invisible(values, &invisible) ||
         !usd_choose(values, USD_PURPOSE, purposes, 4, "default, render, proxy, guide", &purpose))
         return false;
-    state->hidden |= visibility == 1;
+    state->hidden |= invisible;
     state->purpose = (enum purpose)purpose;
     return true;
 }

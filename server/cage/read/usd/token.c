@@ -79,10 +79,11 @@ static bool is_in_number(char c)
     return is_letter(c) || is_digit(c) || c == '.' || c == '-' || c == '+';
 }
 
-/* Reads from `opening` to `closing`, over several lines if they are three characters. A backslash
- * takes the next byte with it, if `escapes`. `what` names the token in the message. */
+/* Reads from `opening` to `closing`, over several lines if `closing` is three characters. `escape`
+ * and the `escaped` bytes after it do not end it; NULL: there is no escape. `what` names the token in
+ * the message. */
 static bool read_quoted(struct usd_text *text, struct usd_token *token, const char *opening,
-                        const char *closing, bool escapes, const char *what)
+                        const char *closing, const char *escape, size_t escaped, const char *what)
 {
     const char *end = text->file->end;
     bool many_lines = strlen(closing) == 3;
@@ -91,9 +92,10 @@ static bool read_quoted(struct usd_text *text, struct usd_token *token, const ch
     while (text->at < end && !goes_on_with(text, closing)) {
         if (!many_lines && (*text->at == '\n' || *text->at == '\r'))
             break;
-        if (escapes && *text->at == '\\' && end - text->at > 1)
-            step(text);
+        size_t left = escape && goes_on_with(text, escape) ? escaped : 0;
         step(text);
+        for (; left > 0 && text->at < end; left--)
+            step(text);
     }
     if (!goes_on_with(text, closing))
         return usd_fail(text->file, token->line, "the %s that begins here does not end", what);
@@ -108,7 +110,23 @@ static bool read_string(struct usd_text *text, struct usd_token *token)
     const char three[] = {quote, quote, quote, 0}, one[] = {quote, 0};
     token->kind = USD_STRING;
     const char *quotes = goes_on_with(text, three) ? three : one;
-    return read_quoted(text, token, quotes, quotes, true, "string");
+    return read_quoted(text, token, quotes, quotes, "\\", 1, "string");
+}
+
+/* Within "@@@" a backslash keeps "@@@" from ending the name, and one or two further '@' after the
+ * end belong to the name. */
+static bool read_asset(struct usd_text *text, struct usd_token *token)
+{
+    token->kind = USD_ASSET;
+    if (!goes_on_with(text, "@@@"))
+        return read_quoted(text, token, "@", "@", NULL, 0, "name of a file");
+    if (!read_quoted(text, token, "@@@", "@@@", "\\@@@", 3, "name of a file"))
+        return false;
+    for (int i = 0; i < 2 && goes_on_with(text, "@"); i++) {
+        text->at++;
+        token->length++;
+    }
+    return true;
 }
 
 static void read_run(struct usd_text *text, struct usd_token *token, bool (*is_in)(char))
@@ -138,16 +156,13 @@ bool usd_next(struct usd_text *text, struct usd_token *token)
     }
     if (c == '"' || c == '\'')
         return read_string(text, token);
-    if (c == '@') {
-        token->kind = USD_ASSET;
-        const char *quotes = goes_on_with(text, "@@@") ? "@@@" : "@";
-        return read_quoted(text, token, quotes, quotes, false, "name of a file");
-    }
+    if (c == '@')
+        return read_asset(text, token);
     if (c == '<') {
         token->kind = USD_PATH;
-        return read_quoted(text, token, "<", ">", false, "path");
+        return read_quoted(text, token, "<", ">", NULL, 0, "path");
     }
-    if (c != 0 && strchr("()[]{}=,:", c)) {
+    if (c != 0 && strchr("()[]{}=,:&", c)) {
         token->kind = USD_SIGN;
         token->length = 1;
         text->at++;

@@ -36,7 +36,7 @@ enum usd_token_kind {
     USD_STRING, /* within one or three ' or " */
     USD_ASSET,  /* within one or three @ */
     USD_PATH,   /* within < > */
-    USD_SIGN,   /* one of ( ) [ ] { } = , : */
+    USD_SIGN,   /* one of ( ) [ ] { } = , : & */
 };
 
 struct usd_token {

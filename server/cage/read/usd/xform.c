@@ -2,6 +2,10 @@
 
 #include <math.h>
 
+/* What the last column of a matrix may differ from 0 0 0 1 by: the rounding of products in double
+ * precision, which some programs leave there. */
+#define MATRIX_ROUNDING 1e-12
+
 /* One entry of xformOpOrder. */
 struct op {
     const struct usd_file *file;
@@ -126,7 +130,7 @@ static bool read_matrix(struct op *op, struct transform *t)
             !usd_tuple(&op->value, "a row of a matrix", 4, &t->m[4 * row]))
             return false;
     for (int row = 0; row < 4; row++) {
-        if (t->m[4 * row + 3] != last[row])
+        if (!(fabs(t->m[4 * row + 3] - last[row]) <= MATRIX_ROUNDING))
             return usd_fail(op->file, line, "the last column of transform must be 0 0 0 1");
         t->m[4 * row + 3] = last[row];
     }

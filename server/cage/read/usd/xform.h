@@ -17,7 +17,7 @@ struct usd_xform {
 
 /* Multiplies the ops that xformOpOrder names, the first of them outermost (UsdGeomXformable). False
  * with ERROR_MODEL for an op that is not known, for a bad value, for a matrix whose last column is
- * not 0 0 0 1, and for the inverse of an op that has none. */
+ * not 0 0 0 1 up to rounding, and for the inverse of an op that has none. */
 bool usd_xform(struct usd_xform *xform, const struct usd_values *values,
                const struct usd_file *file);
 
