@@ -80,7 +80,7 @@ obj = $(patsubst %,$(BUILD)/obj/%.o,$(1))
 PROTOCOL_SRC := $(wildcard protocol/*.c protocol/messages/*.c)
 CAGE_SRC := $(wildcard server/cage/*.c)
 CAGE_READ_SRC := $(wildcard server/cage/build/*.c server/cage/read/*.c server/cage/read/*/*.c server/cage/read/gltf/*.cpp)
-SURFACE_SRC := $(wildcard server/surface/*.c server/surface/topology/*.c server/surface/subdivision/*.c)
+SURFACE_SRC := $(wildcard server/surface/*.c server/surface/topology/*.c server/surface/subdivision/*.c server/surface/spline/*.c server/surface/plan/*.c)
 # Converts between messages and scenes: only for programs that speak the protocol.
 CONVERT_SRC := $(wildcard server/scene/scene_convert*.c)
 SCENE_SRC := $(filter-out $(CONVERT_SRC),$(wildcard server/scene/*.c))

@@ -13,7 +13,7 @@
 enum break_kind {
     BREAK_CREASE,    /* infinitely sharp */
     BREAK_SEMISHARP, /* a crease of finite sharpness */
-    BREAK_JOINT,     /* two border edges that lie together, or two faces of a non-manifold edge */
+    BREAK_JOINT, /* borders that lie together, or a curve across which only the curvature jumps */
 };
 enum { BREAK_KINDS = BREAK_JOINT + 1 };
 

@@ -17,8 +17,10 @@ static inline bool model_format_ends_with(const char *name, const char *ending)
 
 enum model_format {
     MODEL_OBJ,
-    MODEL_GLTF, /* as JSON or GLB */
-    MODEL_USD,  /* in any form; only the text form can be read */
+    MODEL_GLTF,    /* as JSON or GLB */
+    MODEL_USD,     /* in any form; only the text form can be read */
+    MODEL_BPT,     /* Bezier patches */
+    MODEL_PATCHES, /* sheen's own form of patches */
 };
 
 /* True if the ending of the name tells the format, which is then in *format. */
@@ -28,8 +30,9 @@ static inline bool model_format_of_name(const char *name, enum model_format *for
         const char *ending;
         enum model_format format;
     } known[] = {
-        {".obj", MODEL_OBJ}, {".gltf", MODEL_GLTF}, {".glb", MODEL_GLTF}, {".usda", MODEL_USD},
-        {".usd", MODEL_USD}, {".usdc", MODEL_USD},  {".usdz", MODEL_USD},
+        {".obj", MODEL_OBJ},  {".gltf", MODEL_GLTF}, {".glb", MODEL_GLTF},
+        {".usda", MODEL_USD}, {".usd", MODEL_USD},   {".usdc", MODEL_USD},
+        {".usdz", MODEL_USD}, {".bpt", MODEL_BPT},   {".patches", MODEL_PATCHES},
     };
     for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
         if (model_format_ends_with(name, known[i].ending)) {
@@ -41,7 +44,8 @@ static inline bool model_format_of_name(const char *name, enum model_format *for
 }
 
 /* The ending of the name decides if it is known; else the contents decide. glTF begins with "glTF",
- * or with '{' after white space; USD with "#usda" or "PXR-USDC"; the rest is OBJ. */
+ * or with '{' after white space; USD with "#usda" or "PXR-USDC"; .bpt with a digit and .patches with "patches", after white space;
+ * the rest is OBJ. */
 static inline enum model_format model_format(const char *name, const void *bytes, size_t size)
 {
     const char *text = bytes;
@@ -56,6 +60,10 @@ static inline enum model_format model_format(const char *name, const void *bytes
         return MODEL_USD;
     while (at < size && text[at] && strchr(" \t\r\n", text[at]))
         at++;
+    if (size - at >= 8 && memcmp(text + at, "patches", 7) == 0)
+        return MODEL_PATCHES;
+    if (at < size && text[at] >= '0' && text[at] <= '9')
+        return MODEL_BPT;
     return at < size && text[at] == '{' ? MODEL_GLTF : MODEL_OBJ;
 }
 

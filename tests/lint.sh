@@ -67,6 +67,8 @@ room server/cage/read "$common|protocol|server/cage|server/cage/build|server/cag
 room server/surface "$common" 'what a surface is to everybody else knows no builder, no cage'
 room server/surface/topology "$common|server/cage" 'connectivity is of the cage, whatever its scheme'
 room server/surface/subdivision "$common|server/cage|server/surface|server/surface/topology" 'builders of one kind of surface'
+room server/surface/spline "$common|server/cage|server/surface" 'the builder of patches knows none of subdivision'
+room server/surface/plan "$common|server/cage|server/surface|server/surface/spline|server/surface/subdivision" 'chooses the builder of a model'
 room server/image "$common|protocol" 'pictures are data'
 room server/sandbox "$common|server/cage|server/cage/read|server/image" 'the worker programs see files alone'
 room server/scene "$common|protocol|protocol/messages|server/cage|server/surface" 'a request is data'
@@ -96,7 +98,7 @@ room server/threads "$common|server/cage|server/image|server/net|server/render|s
     'threads run what others give them'
 room server/output "$common|protocol|protocol/messages|server/image|server/render|server/scene|server/threads" \
     'an encoder knows pictures, no client'
-room server/assets "$common|protocol|protocol/messages|server/cage|server/net|server/render|server/scene|server/surface|server/surface/subdivision|server/threads" \
+room server/assets "$common|protocol|protocol/messages|server/cage|server/net|server/render|server/scene|server/surface|server/surface/plan|server/threads" \
     'models and images serve every frame, and know none'
 room server/frame "$common|protocol|protocol/messages|server/assets|server/curves|server/curves/breaks|server/curves/compare|server/curves/fields|server/curves/lines|server/output|server/scene" \
     'a frame tells its session by events (request.h), so it includes none'
@@ -118,7 +120,7 @@ no_include server/curves 'protocol/([^b]|b[^r])' 'of the protocol computations k
 no_include server/ops 'server/render/([^gn]|g[^l]|(gl|native)/[^d]|(gl|native)/device_|n[^a])' 'a device is chosen by its device.h alone'
 no_include server/render 'server/surface/(bicubic|texels)' 'of which degree patches are is the business of server/surface'
 no_include server/scene 'server/surface/(bicubic|texels|patch|evaluate|bound)' 'a request knows the size of a surface, not the surface'
-no_include server/assets 'server/surface/(bicubic|texels|patch|evaluate|bound|node|subdivision/[^b])' 'models are built and kept, not looked into'
+no_include server/assets 'server/surface/(bicubic|texels|patch|evaluate|bound|node|subdivision|spline)' 'models are built and kept, not looked into'
 no_include server/threads 'server/sandbox/([a-z]*_tasks|sandbox)\.h' 'what parses files from strangers is for the workers alone'
 no_include client/cli 'client/lib/([^s]|s[^h])' 'of libsheen the command knows sheen.h alone'
 no_include client/cli 'protocol/(address|codec|frame|tls)\.' 'of the protocol the command knows no byte: libsheen says it'

@@ -59,6 +59,7 @@ static void print_json(struct json *json, const struct sheen_model_info *info,
         {"semisharp_edges", info->semisharp_edges},
         {"sharp_vertices", info->sharp_vertices},
         {"holes", info->holes},
+        {"patches", info->patches},
         {"nonmanifold_edges", info->nonmanifold_edges},
         {"nonmanifold_vertices", info->nonmanifold_vertices},
         {"regular_patches", info->regular_patches},
@@ -108,25 +109,19 @@ static void print_counts(const char *title, const struct count *counts)
     putchar('\n');
 }
 
-static void print_table(const struct sheen_model_info *info, const struct sheen_server *server)
+static void print_cage(const struct sheen_model_info *info)
 {
-    printf("%-16s %s\n%-16s ", "name", info->name, "sha256");
-    for (size_t i = 0; i < SHEEN_ID_BYTES; i++)
-        printf("%02x", info->id[i]);
-    printf("\n%-16s %" PRIu64 " bytes\n", "file", info->file_bytes);
     print_counts("cage", (const struct count[]){{info->vertices, "vertex, ", "vertices, "},
                                                 {info->faces, "face: ", "faces: "},
                                                 {info->triangles, "triangle, ", "triangles, "},
                                                 {info->quads, "quad, ", "quads, "},
                                                 {info->ngons, "larger", "larger"},
                                                 {0}});
-    printf("%-16s %.9g %.9g %.9g to %.9g %.9g %.9g\n", "box", info->box_min[0], info->box_min[1],
-           info->box_min[2], info->box_max[0], info->box_max[1], info->box_max[2]);
-    print_counts("boundary",
-                 (const struct count[]){{info->boundary_edges, "edge, ", "edges, "},
-                                        {info->boundary_extraordinary, "extraordinary vertex",
-                                         "extraordinary vertices"},
-                                        {0}});
+}
+
+/* What only a cage has: extraordinary vertices and sharpness. */
+static void print_rules(const struct sheen_model_info *info)
+{
     printf("%-16s", "extraordinary");
     for (uint32_t i = 0; i < info->n_valences; i++)
         printf("%s %u of valence %u", i ? "," : "", info->extraordinary[i].count,
@@ -139,6 +134,27 @@ static void print_table(const struct sheen_model_info *info, const struct sheen_
                                {info->sharp_vertices, "vertex, ", "vertices, "},
                                {info->holes, "hole", "holes"},
                                {0}});
+}
+
+static void print_table(const struct sheen_model_info *info, const struct sheen_server *server)
+{
+    printf("%-16s %s\n%-16s ", "name", info->name, "sha256");
+    for (size_t i = 0; i < SHEEN_ID_BYTES; i++)
+        printf("%02x", info->id[i]);
+    printf("\n%-16s %" PRIu64 " bytes\n", "file", info->file_bytes);
+    if (info->patches)
+        print_counts("patches", (const struct count[]){{info->patches, "bicubic", "bicubic"}, {0}});
+    else
+        print_cage(info);
+    printf("%-16s %.9g %.9g %.9g to %.9g %.9g %.9g\n", "box", info->box_min[0], info->box_min[1],
+           info->box_min[2], info->box_max[0], info->box_max[1], info->box_max[2]);
+    print_counts("boundary",
+                 (const struct count[]){{info->boundary_edges, "edge, ", "edges, "},
+                                        {info->boundary_extraordinary, "extraordinary vertex",
+                                         "extraordinary vertices"},
+                                        {0}});
+    if (!info->patches)
+        print_rules(info);
     if (info->nonmanifold_edges || info->nonmanifold_vertices)
         print_counts("non-manifold",
                      (const struct count[]){{info->nonmanifold_edges, "edge, ", "edges, "},
@@ -197,7 +213,8 @@ static const struct option_row *const TABLES[] = {OPTIONS_MODEL, OPTIONS_COMMON,
 const struct command COMMAND_INFO = {
     .name = "info",
     .arguments = "MODEL [option]...",
-    .summary = "Describes a model: its cage, probable mistakes, and the memory of its tables.",
+    .summary =
+        "Describes a model: its cage or patches, probable mistakes, and the memory of its tables.",
     .tables = TABLES,
     .examples = "  sheen info hood.obj\n"
                 "  sheen info hood.obj --json\n"

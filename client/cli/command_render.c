@@ -122,7 +122,8 @@ const struct command COMMAND_RENDER = {
     .summary =
         "Renders the reflection lines on a model's limit surface, exact at every pixel.\n"
         "MODEL is a control cage: OBJ, USD as text (.usda), GLB, or glTF together with the buffer\n"
-        "files that it names.",
+        "files that it names; or patches: .bpt, .patches, or the free-form surfaces of an OBJ "
+        "file.",
     .tables = TABLES,
     .examples =
         "  sheen render hood.obj -o hood.png\n"

@@ -134,6 +134,7 @@ static void copy_info(struct sheen_model_info *info, const sheen_ModelInfo *body
         .quads = body->quads,
         .ngons = body->ngons,
         .ptex_faces = body->ptex_faces,
+        .patches = body->patches,
         .boundary_edges = body->boundary_edges,
         .n_valences = body->extraordinary_count,
         .boundary_extraordinary = body->boundary_extraordinary,

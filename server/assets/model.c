@@ -5,7 +5,7 @@
 
 #include "server/base/clock.h"
 #include "server/base/fault.h"
-#include "server/surface/subdivision/build.h"
+#include "server/surface/plan/surface_plan.h"
 #include "server/surface/support.h"
 #include "server/assets/build_clock.h"
 
@@ -28,7 +28,7 @@ struct model_build {
     struct build_order order;
     struct task task; /* for the stages that are not cut into slices */
     struct cage cage;
-    struct limit_plan *plan;
+    struct surface_plan plan;
     struct model *model;
     bool ok;
     struct error error;
@@ -50,8 +50,7 @@ static void model_free(struct model *model)
 
 static void drop_cage(struct model_build *build)
 {
-    limit_plan_destroy(build->plan);
-    build->plan = NULL;
+    surface_plan_finish(&build->plan);
     cage_finish(&build->cage);
 }
 
@@ -120,8 +119,8 @@ static void slice_run(struct task *task, void *context)
     build_clock_start(&clock, &build->order, &build->cpu_us);
     const struct limit_watch watch = build_clock_watch(&clock);
     slice->ok = check_not_cancelled(&build->order, &slice->error) &&
-                limit_build_faces(&build->model->tables, build->plan, slice->first, slice->last,
-                                  &watch, &slice->error);
+                surface_build_faces(&build->model->tables, &build->plan, slice->first, slice->last,
+                                    &watch, &slice->error);
     slice->took_us = clock_now_us() - start_us;
     atomic_fetch_add(&build->order.progress->done, slice->last - slice->first);
 }
@@ -221,7 +220,7 @@ static bool start_slices(struct model_build *build)
 /* Allocates the tables in the form that the device takes. */
 static bool init_tables(struct model_build *build, struct error *error)
 {
-    const struct limit_size *size = limit_plan_size(build->plan);
+    const struct limit_size *size = surface_plan_size(&build->plan);
     struct limit_tables *tables = &build->model->tables;
     cage_finish(&build->cage); /* the plan holds all that is still needed of the cage */
     return renderer_takes_tables_on_demand(render_thread_device(build->order.render_thread))
@@ -249,8 +248,7 @@ static bool read_cage(struct model_build *build)
     const struct limit_watch watch = build_clock_watch(&clock);
     if (check_not_cancelled(order, &error) &&
         cage_statistics(&build->cage, &model->statistics, &error) &&
-        (build->plan = limit_plan_create(&build->cage, &watch, &error)) &&
-        init_tables(build, &error))
+        surface_plan_init(&build->plan, &build->cage, &watch, &error) && init_tables(build, &error))
         return true;
     return fail_named(build, &error);
 }

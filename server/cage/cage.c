@@ -15,6 +15,7 @@ void cage_finish(struct cage *cage)
     free(cage->crease);
     free(cage->corner);
     free(cage->hole);
+    free(cage->patch);
     free(cage->warnings);
     *cage = (struct cage){0};
 }

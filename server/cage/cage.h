@@ -1,4 +1,4 @@
-/* The control cage as data: vertices, faces and subdivision tags as read from a file. Readers
+/* A model as data: a control cage, which is vertices, faces and subdivision tags, or patches, as read from a file. Readers
  * remove damaged elements (build/repair.h), and join vertices at equal positions where the format
  * or the user says so (build/weld.h).
  *
@@ -14,6 +14,7 @@
 #include <stdint.h>
 
 #include "server/base/error.h"
+#include "server/cage/patch.h"
 
 /* Sharpness from this value on is infinite (OpenSubdiv sdc/crease.h). */
 #define CAGE_SHARPNESS_INFINITE 10.0f
@@ -21,6 +22,7 @@
 #define CAGE_MAX_VERTICES 100000000u
 #define CAGE_MAX_FACES 50000000u
 #define CAGE_MAX_CORNERS 400000000u
+#define CAGE_MAX_PATCHES 10000000u
 /* The largest magnitude of a coordinate, in file units: its square and cube are finite in double
  * precision, and differences are finite in single precision. */
 #define CAGE_MAX_COORDINATE 1e30
@@ -102,6 +104,10 @@ struct cage {
     size_t n_holes;
     uint32_t *hole; /* face indices */
 
+    /* A model of patches has no vertex, face or tag, but face_start, with one entry. */
+    size_t n_patches;
+    struct cage_patch *patch;
+
     /* Warnings for the user: all findings, and unknown tags that were ignored. Lines separated by
      * '\n', or NULL; at most CAGE_WARNINGS_BYTES with the final 0; owned by the cage. */
     char *warnings;
@@ -113,8 +119,8 @@ struct cage {
 void cage_finish(struct cage *cage);
 
 /* Checks that every index is in range, every face has 3 or more different corners, every coordinate
- * is finite and within CAGE_MAX_COORDINATE, there is a face, counts are within limits, sharpness is
- * finite and at least 0, and creases lie on edges. False with ERROR_MODEL, which names `name` and
+ * is finite and within CAGE_MAX_COORDINATE, there are faces or patches but not both, counts are within limits, sharpness is
+ * finite and at least 0, creases lie on edges, and patches have a known basis. False with ERROR_MODEL, which names `name` and
  * the element, or with ERROR_SERVER when memory is short. */
 bool cage_check(const struct cage *cage, const char *name, struct error *error);
 

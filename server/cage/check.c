@@ -36,7 +36,14 @@ static bool check_counts(const struct check *check)
     if (cage->n_faces > CAGE_MAX_FACES)
         return error_set(check->error, ERROR_MODEL, "%s: %zu faces, the most that is read is %u",
                          check->name, cage->n_faces, CAGE_MAX_FACES);
-    if (cage->n_faces == 0)
+    if (cage->n_patches > CAGE_MAX_PATCHES)
+        return error_set(check->error, ERROR_MODEL, "%s: %zu patches, the most that is read is %u",
+                         check->name, cage->n_patches, CAGE_MAX_PATCHES);
+    if (cage->n_patches > 0 && cage->n_faces > 0)
+        return error_set(check->error, ERROR_MODEL,
+                         "%s: %zu faces and %zu patches: sheen draws either, give each a file",
+                         check->name, cage->n_faces, cage->n_patches);
+    if (cage->n_faces == 0 && cage->n_patches == 0)
         return error_set(check->error, ERROR_MODEL,
                          "%s: no face at all (%zu vertices): a cage needs at least one face",
                          check->name, cage->n_vertices);
@@ -47,19 +54,39 @@ static bool check_counts(const struct check *check)
     return true;
 }
 
+/* Checks the position of a vertex, or a point of a patch. */
+static bool check_position(const struct check *check, const char *what, size_t index,
+                           const double position[3])
+{
+    for (int i = 0; i < 3; i++) {
+        if (!isfinite(position[i]))
+            return fail(check, what, index, "has a coordinate %c that is not finite", "xyz"[i]);
+        if (fabs(position[i]) > CAGE_MAX_COORDINATE)
+            return fail(check, what, index,
+                        "has coordinate %c = %g, beyond the largest that is read, %g", "xyz"[i],
+                        position[i], CAGE_MAX_COORDINATE);
+    }
+    return true;
+}
+
 static bool check_positions(const struct check *check)
 {
     const struct cage *cage = check->cage;
-    for (size_t v = 0; v < cage->n_vertices; v++) {
-        for (int i = 0; i < 3; i++) {
-            double value = cage->position[v][i];
-            if (!isfinite(value))
-                return fail(check, "vertex", v, "has a coordinate %c that is not finite", "xyz"[i]);
-            if (fabs(value) > CAGE_MAX_COORDINATE)
-                return fail(check, "vertex", v,
-                            "has coordinate %c = %g, beyond the largest that is read, %g", "xyz"[i],
-                            value, CAGE_MAX_COORDINATE);
-        }
+    for (size_t v = 0; v < cage->n_vertices; v++)
+        if (!check_position(check, "vertex", v, cage->position[v]))
+            return false;
+    return true;
+}
+
+static bool check_patches(const struct check *check)
+{
+    const struct cage *cage = check->cage;
+    for (size_t i = 0; i < cage->n_patches; i++) {
+        if (cage->patch[i].basis >= N_CAGE_BASES)
+            return fail(check, "patch", i, "has no known basis");
+        for (int k = 0; k < 16; k++)
+            if (!check_position(check, "patch", i, cage->patch[i].point[k]))
+                return false;
     }
     return true;
 }
@@ -239,5 +266,5 @@ bool cage_check(const struct cage *cage, const char *name, struct error *error)
 {
     const struct check check = {cage, name ? name : "cage", error};
     return check_counts(&check) && check_positions(&check) && check_faces(&check) &&
-           check_tag_values(&check) && check_crease_edges(&check);
+           check_patches(&check) && check_tag_values(&check) && check_crease_edges(&check);
 }

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "server/cage/edges.h"
+#include "server/cage/joints.h"
 
 enum { ON_BOUNDARY = 1, NON_MANIFOLD = 2, HAS_FAN = 4 };
 
@@ -188,10 +189,26 @@ static bool count_vertices(const struct cage *cage, const struct edges *edges,
     return true;
 }
 
+static bool count_patches(const struct cage *cage, struct cage_statistics *statistics,
+                          struct error *error)
+{
+    struct cage_joints joints;
+    if (!cage_joints_find(&joints, cage))
+        return error_set(error, ERROR_SERVER, "no memory to count the edges of %zu patches",
+                         cage->n_patches);
+    statistics->n_patches = (uint32_t)cage->n_patches;
+    statistics->n_boundary_edges = joints.n_boundary;
+    statistics->n_nonmanifold_edges = joints.n_tangled + joints.n_against;
+    cage_joints_finish(&joints);
+    return true;
+}
+
 bool cage_statistics(const struct cage *cage, struct cage_statistics *statistics,
                      struct error *error)
 {
     *statistics = (struct cage_statistics){0};
+    if (cage->n_patches > 0)
+        return count_patches(cage, statistics, error);
     struct edges edges;
     if (!edges_init(&edges, cage, statistics, error))
         return false;

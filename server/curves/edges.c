@@ -14,6 +14,19 @@ static unsigned border_at(const struct limit_tables *tables, uint32_t face, unsi
     return tables->nodes[face].borders >> (4 * edge) & 15;
 }
 
+/* True if normals agree across edge e of a face, but curvatures do not. */
+static bool is_bend(const struct limit_tables *tables, uint32_t face, unsigned edge)
+{
+    return tables->bends && tables->bends[face] >> edge & 1;
+}
+
+/* True for an edge that is one point, such as a pole: a border of nothing. */
+static bool is_collapsed(const struct limit_tables *tables, uint32_t face, unsigned edge)
+{
+    return tables->adjacency[face].across[edge] == LIMIT_NO_FACE &&
+           border_at(tables, face, edge) == 0;
+}
+
 static bool is_part_of_ngon(const struct limit_tables *tables, uint32_t face)
 {
     return tables->nodes[face].ngon_size > 0;
@@ -47,17 +60,21 @@ static void list_edge(struct surface_edges *edges, const struct limit_tables *ta
 {
     const unsigned levels = border_at(tables, face, edge);
     const uint32_t other = across(tables, face, edge);
+    const bool bends = is_bend(tables, face, edge);
+    if (is_collapsed(tables, face, edge))
+        return;
     if (other == LIMIT_NO_FACE || is_hole(tables, other >> 2)) {
         edges->borders[edges->n_borders++] = (struct surface_border){face, (uint8_t)edge};
         return;
     }
     bool is_part = is_part_of_ngon(tables, face), beside_part = is_part_of_ngon(tables, other >> 2);
     bool is_listed_there = is_part == beside_part ? (face << 2 | edge) > other : beside_part;
-    if (levels == 0 || is_listed_there)
+    if ((levels == 0 && !bends) || is_listed_there)
         return;
     struct surface_edge crease = {.face = {face, other >> 2},
                                   .edge = {(uint8_t)edge, other & 3},
-                                  .levels = (uint8_t)levels,
+                                  .levels = (uint8_t)(bends ? LIMIT_BORDER_SHARP : levels),
+                                  .is_bend = bends,
                                   .from = 1,
                                   .by = -1};
     if (is_part && !beside_part) {
@@ -155,7 +172,8 @@ struct surface_edges_room surface_edges_room(const struct limit_tables *tables)
             const uint32_t other = across(tables, face, edge);
             bool ends = other == LIMIT_NO_FACE || is_hole(tables, other >> 2);
             room.borders += ends;
-            room.creases += !ends && border_at(tables, face, edge) > 0;
+            room.creases +=
+                !ends && (border_at(tables, face, edge) > 0 || is_bend(tables, face, edge));
             room.sectors += is_extraordinary(tables, face, edge);
         }
     room.bytes += (room.creases + 1) * sizeof(struct surface_edge) +

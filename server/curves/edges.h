@@ -17,6 +17,7 @@ struct surface_edge {
     uint32_t face[2];
     uint8_t edge[2];
     uint8_t levels;  /* LIMIT_BORDER_SHARP, or the levels that a semi-sharp crease takes */
+    bool is_bend;    /* two patches whose normals agree, and whose curvatures do not */
     bool has_dart;   /* an infinitely sharp crease that ends at one of its vertices */
     bool is_joint;   /* two borders that lie together: each has a curve of its own */
     bool is_flipped; /* the faces are wound against each other */
@@ -38,7 +39,7 @@ struct surface_sector {
 };
 
 struct surface_edges {
-    struct surface_edge *creases; /* in the order of faces */
+    struct surface_edge *creases; /* and bends, in the order of faces */
     struct surface_border *borders;
     struct surface_sector *sectors; /* of extraordinary vertices alone */
     size_t n_creases, n_borders, n_sectors;

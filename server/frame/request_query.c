@@ -11,6 +11,8 @@ static void fill_statistics(sheen_ModelInfo *info, const struct cage_statistics 
 {
     _Static_assert(CAGE_MAX_VALENCES == sizeof info->extraordinary / sizeof *info->extraordinary,
                    "the numbers fit the message");
+    info->has_patches = statistics->n_patches > 0;
+    info->patches = statistics->n_patches;
     info->triangles = statistics->n_triangles;
     info->quads = statistics->n_quads;
     info->ngons = statistics->n_ngons;

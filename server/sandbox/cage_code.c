@@ -41,6 +41,8 @@ void cage_write(struct sink *sink, const struct cage *cage)
     sink_bytes(sink, cage->corner, cage->n_corners * sizeof *cage->corner);
     sink_u64(sink, cage->n_holes);
     sink_bytes(sink, cage->hole, cage->n_holes * sizeof *cage->hole);
+    sink_u64(sink, cage->n_patches);
+    sink_bytes(sink, cage->patch, cage->n_patches * sizeof *cage->patch);
     write_findings(sink, cage);
 }
 
@@ -124,6 +126,7 @@ bool cage_take(struct source *source, struct cage *cage, const char *name, struc
     cage->crease = take_array(&taking, &cage->n_creases, 0, sizeof *cage->crease);
     cage->corner = take_array(&taking, &cage->n_corners, 0, sizeof *cage->corner);
     cage->hole = take_array(&taking, &cage->n_holes, 0, sizeof *cage->hole);
+    cage->patch = take_array(&taking, &cage->n_patches, 0, sizeof *cage->patch);
     take_findings(source, cage);
     bool ok = false;
     if (taking.no_memory)

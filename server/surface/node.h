@@ -51,7 +51,7 @@ struct limit_node {
 /* At an edge of a face the surface may end or have a crease. The value is 0 for neither; else the
  * number of levels that the crease takes (it is rounded within 2^-levels of the face); or
  * LIMIT_BORDER_SHARP if the surface ends or the crease is infinitely sharp. Edge e has the bits
- * from 4 e on. */
+ * from 4 e on. An edge with 0 and without a neighbour is one point, such as a pole. */
 #define LIMIT_BORDER_SHARP 15u
 
 /* The neighbour across edge e (corner e to corner e + 1) of a face: its number << 2 | its edge, or

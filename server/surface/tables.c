@@ -39,6 +39,7 @@ static bool init(struct limit_tables *tables, const struct limit_size *size, boo
     tables->adjacency = malloc(tables->n_faces * sizeof *tables->adjacency);
     tables->heads = malloc(tables->n_nodes * sizeof *tables->heads);
     tables->whole = malloc(tables->n_nodes * sizeof *tables->whole);
+    tables->bends = size->has_bends ? calloc(tables->n_faces, 1) : NULL;
     bool has_levels;
     memcpy(tables->count, size->count, sizeof tables->count);
     if (stored) {
@@ -53,7 +54,8 @@ static bool init(struct limit_tables *tables, const struct limit_size *size, boo
             record_cache_create(sizeof(struct limit_bound), level_bounds_of(tables));
         has_levels = tables->level_bounds;
     }
-    if (!tables->nodes || !tables->adjacency || !tables->heads || !tables->whole || !has_levels) {
+    if (!tables->nodes || !tables->adjacency || !tables->heads || !tables->whole || !has_levels ||
+        (size->has_bends && !tables->bends)) {
         size_t bytes = limit_tables_host_bytes(tables);
         limit_tables_finish(tables);
         return error_set(error, ERROR_SERVER, "out of memory: the tables need %zu bytes", bytes);
@@ -82,6 +84,7 @@ void limit_tables_finish(struct limit_tables *tables)
     free(tables->nodes);
     free(tables->adjacency);
     free(tables->heads);
+    free(tables->bends);
     free(tables->whole);
     free(tables->texels);
     free(tables->bound_first);
@@ -139,9 +142,9 @@ size_t limit_support_room(const struct limit_tables *tables)
 
 size_t limit_tables_host_bytes(const struct limit_tables *tables)
 {
-    size_t bytes = limit_tables_bytes(tables) +
-                   limit_support_room(tables) * sizeof *tables->support +
-                   (tables->source ? tables->source->bytes : 0);
+    size_t bytes =
+        limit_tables_bytes(tables) + limit_support_room(tables) * sizeof *tables->support +
+        (tables->bends ? tables->n_faces : 0) + (tables->source ? tables->source->bytes : 0);
     if (tables->on_demand)
         return bytes + record_cache_most_bytes(sizeof(struct limit_bound), level_bounds_of(tables));
     return bytes + tables->n_nodes * (whole_bytes(tables) + sizeof *tables->bound_first) +

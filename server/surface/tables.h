@@ -10,7 +10,7 @@
  * whole, and make the points of a level, the same bytes, from the cage when they are needed
  * (source.h): levels that no view reaches cost nothing.
  *
- * Builders (subdivision/build.h) compute the size of the tables and then fill any range of faces;
+ * Builders (plan/surface_plan.h) compute the size of the tables and then fill any range of faces;
  * several threads may fill disjoint ranges. Filled tables are read-only, and any thread may read
  * them. */
 #ifndef SHEEN_SURFACE_TABLES_H
@@ -39,6 +39,7 @@ struct limit_size {
     double box_min[3], box_max[3];   /* box of the limit positions, which a camera frames */
     double hull_min[3], hull_max[3]; /* box of the control points, which contains the surface */
     struct limit_source *source;     /* owned by the plan */
+    bool has_bends;                  /* the tables need `bends` */
 };
 
 /* A node as a whole: for a CORNER its frame, a quaternion x y z w that turns frame coordinates into
@@ -56,6 +57,9 @@ struct limit_tables {
     struct limit_node *nodes;          /* [n_nodes]; node f is the root of face f */
     struct limit_adjacency *adjacency; /* [n_faces] */
     struct limit_head *heads;          /* [n_nodes]; unused for SPLIT and HOLE */
+    /* [n_faces]: bit e: across edge e normals agree but curvatures do not, though `borders` says 0. NULL: at no edge of
+     * the surface. */
+    uint8_t *bends;
     struct limit_bound
         /* [n_nodes], about the node's origin: the bound of the node's own net, which is one step
          * coarser than the first level of a CORNER; radius -1: SPLIT, HOLE. */

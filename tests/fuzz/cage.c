@@ -7,7 +7,7 @@
 
 #include "server/cage/read/read.h"
 #include "server/cage/statistics.h"
-#include "server/surface/subdivision/build.h"
+#include "server/surface/plan/surface_plan.h"
 #include "server/surface/tables.h"
 #include "server/sandbox/cage_code.h"
 #include "tests/fuzz/fuzz.h"
@@ -19,13 +19,13 @@ static void build_tables(const struct cage *cage)
     struct error error = {0};
     struct cage_statistics statistics;
     struct limit_tables tables = {0};
-    struct limit_plan *plan = NULL;
+    struct surface_plan plan = {NULL, NULL};
     bool ok = cage_statistics(cage, &statistics, &error) &&
-              (plan = limit_plan_create(cage, NULL, &error)) &&
-              limit_tables_init(&tables, limit_plan_size(plan), &error) &&
-              limit_build_faces(&tables, plan, 0, tables.n_faces, NULL, &error);
+              surface_plan_init(&plan, cage, NULL, &error) &&
+              limit_tables_init(&tables, surface_plan_size(&plan), &error) &&
+              surface_build_faces(&tables, &plan, 0, tables.n_faces, NULL, &error);
     MUST(ok || error.kind == ERROR_MODEL || (error.kind == ERROR_SERVER && fuzz_memory_failed()));
-    limit_plan_destroy(plan);
+    surface_plan_finish(&plan);
     limit_tables_finish(&tables);
 }
 
@@ -34,7 +34,8 @@ static void check_same(const struct cage *a, const struct cage *b)
     MUST(a->n_vertices == b->n_vertices && a->n_faces == b->n_faces);
     MUST(a->n_creases == b->n_creases && a->n_corners == b->n_corners && a->n_holes == b->n_holes);
     MUST(a->scheme == b->scheme && a->boundary == b->boundary && a->chaikin == b->chaikin);
-    MUST(a->up == b->up);
+    MUST(a->up == b->up && a->n_patches == b->n_patches);
+    MUST(memcmp(a->patch, b->patch, a->n_patches * sizeof *a->patch) == 0);
     MUST(memcmp(a->position, b->position, a->n_vertices * sizeof *a->position) == 0);
     MUST(memcmp(a->face_vertex, b->face_vertex,
                 a->face_start[a->n_faces] * sizeof *a->face_vertex) == 0);
@@ -73,7 +74,7 @@ void fuzz_cage(const void *bytes, size_t size, const char *name)
         return;
     }
     hand_over(&cage);
-    if (cage.n_faces <= MOST_FACES)
+    if (cage.n_faces + cage.n_patches <= MOST_FACES)
         build_tables(&cage);
     cage_finish(&cage);
 }

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Makes the control cages in this folder: python3 tests/models/make_models.py [FOLDER]. Needs only Python's standard
+"""Makes the models in this folder: python3 tests/models/make_models.py [FOLDER]. Needs only Python's standard
 library, and gives the same bytes on every machine. Coordinates are rounded to multiples of 2^-12, which single
 precision (glTF) and OBJ's decimals both represent exactly, so that fender.obj and fender.gltf are the same cage."""
 import base64
@@ -523,6 +523,48 @@ def triangles():
     return Cage(points, faces)
 
 
+def bezier_pieces(control):
+    """A cubic B-spline with uniform knots, which begins and ends at its first and last point, as Bezier pieces."""
+    n, pieces = len(control), []
+    knots = [0] * 3 + list(range(n - 2)) + [n - 3] * 3
+    for k in range(3, n):
+        a, b, piece = knots[k], knots[k + 1], []
+        for j in range(4):  # the polar form at 3 - j times a and j times b
+            d = list(control[k - 3:k + 1])
+            for r in range(1, 4):
+                x = a if r <= 3 - j else b
+                for i in range(3, r - 1, -1):
+                    low, high = knots[k - 3 + i], knots[k + 1 + i - r]
+                    d[i] = tuple(((high - x) * p + (x - low) * q) / (high - low) for p, q in zip(d[i - 1], d[i]))
+            piece.append(d[3])
+        pieces.append(piece)
+    return pieces
+
+
+def bottle():
+    """Bicubic Bezier patches: four around, seven from the middle of the bottom, a pole, to the mouth. The section is an ellipse
+    of four cubic arcs, whose curvatures agree at their ends."""
+    profile = [(0, 0, 0), (26, 0, 19), (38, 0, 26), (39, 12, 26), (33, 52, 24), (38, 96, 29), (34, 130, 26), (13, 140, 13),
+               (12, 168, 12), (13, 184, 13)]  # half axis along x, height, half axis along z
+    k = 0.5522847498307936  # 4 (sqrt(2) - 1) / 3
+    arc = [(1, 0), (1, k), (k, 1), (0, 1)]
+    patches = []
+    for turn in range(4):
+        for piece in bezier_pieces(profile):
+            patches.append([(x * c, y, -z * s) for x, y, z in piece for c, s in arc])
+        arc = [(-s, c) for c, s in arc]
+    return patches
+
+
+def write_bpt(path, patches, comment):
+    with open(path, "w", newline="\n") as out:
+        out.write("# %s\n# made by tests/models/make_models.py\n%d\n" % (comment, len(patches)))
+        for patch in patches:
+            out.write("3 3\n")
+            for p in patch:
+                out.write("%.13g %.13g %.13g\n" % tuple(x + 0.0 for x in p))
+
+
 def main():
     folder = sys.argv[1] if len(sys.argv) > 1 else os.path.dirname(os.path.abspath(__file__))
 
@@ -546,6 +588,7 @@ def main():
     write_obj(path("smoothtriangles.obj"), *smooth_triangles(), comment="The drum with smooth triangles")
     write_obj(path("nonmanifold.obj"), nonmanifold(), comment="A fin, a shared vertex, a turned quad")
     write_obj(path("triangles.obj"), triangles(), comment="A waved sheet of plain triangles")
+    write_bpt(path("bottle.bpt"), bottle(), comment="A bottle of 28 bicubic Bezier patches, millimetres")
 
 
 if __name__ == "__main__":

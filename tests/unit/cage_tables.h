@@ -1,4 +1,4 @@
-/* Builds the limit tables of an OBJ, for tests of drawing and evaluation. */
+/* Builds the limit tables of a model, for tests of drawing and evaluation. */
 #ifndef SHEEN_TESTS_CAGE_TABLES_H
 #define SHEEN_TESTS_CAGE_TABLES_H
 
@@ -13,29 +13,35 @@
 #include <cmocka.h>
 
 #include "server/cage/read/read.h"
-#include "server/surface/subdivision/build.h"
+#include "server/surface/plan/surface_plan.h"
 #include "server/surface/tables.h"
 #include "server/surface/vec.h"
 
-static inline void build_as(const char *bytes, size_t size, bool stored,
+static inline void build_cage(const struct cage *cage, bool stored, struct limit_tables *tables)
+{
+    struct error error = {0};
+    struct surface_plan plan;
+    assert_true(surface_plan_init(&plan, cage, NULL, &error));
+    assert_true((stored ? limit_tables_init
+                        : limit_tables_init_on_demand)(tables, surface_plan_size(&plan), &error));
+    assert_true(surface_build_faces(tables, &plan, 0, tables->n_faces, NULL, &error));
+    surface_plan_finish(&plan);
+}
+
+static inline void build_as(const char *name, const char *bytes, size_t size, bool stored,
                             struct limit_tables *tables)
 {
     struct cage cage;
     struct error error = {0};
-    if (!cage_read(&cage, bytes, size, "scene.obj", &error))
+    if (!cage_read(&cage, bytes, size, name, &error))
         fail_msg("%s", error.text);
-    struct limit_plan *plan = limit_plan_create(&cage, NULL, &error);
-    assert_non_null(plan);
-    assert_true((stored ? limit_tables_init
-                        : limit_tables_init_on_demand)(tables, limit_plan_size(plan), &error));
-    assert_true(limit_build_faces(tables, plan, 0, tables->n_faces, NULL, &error));
-    limit_plan_destroy(plan);
+    build_cage(&cage, stored, tables);
     cage_finish(&cage);
 }
 
 static inline void build(const char *bytes, size_t size, struct limit_tables *tables)
 {
-    build_as(bytes, size, true, tables);
+    build_as("scene.obj", bytes, size, true, tables);
 }
 
 static inline void build_file_as(const char *path, bool stored, struct limit_tables *tables)
@@ -45,7 +51,7 @@ static inline void build_file_as(const char *path, bool stored, struct limit_tab
     assert_non_null(file);
     size_t size = fread(bytes, 1, sizeof bytes, file);
     fclose(file);
-    build_as(bytes, size, stored, tables);
+    build_as(path, bytes, size, stored, tables);
 }
 
 static inline void build_file(const char *path, struct limit_tables *tables)

@@ -334,13 +334,13 @@ static void test_warnings(void **state)
 {
     (void)state;
     struct cage cage;
-    read_obj(&cage, PAIR "curv 0 1\nsurf 2\ncurv 1 2\n"
+    read_obj(&cage, PAIR "shadow_obj a\ntrace_obj b\nshadow_obj c\n"
                          "t facevaryinginterpolateboundary 1/0/0 1\n"
                          "t facevaryingpropagatecorners 1/0/0 1\n"
                          "t vertexedit 5/4/2 0 0 1 0 0 1 2 3 4 set P\n");
     assert_string_equal(
         cage.warnings,
-        "part.obj:9: unknown keyword 'curv' passed over, and any others\n"
+        "part.obj:9: unknown keyword 'shadow_obj' passed over, and any others\n"
         "part.obj:12: t facevaryinginterpolateboundary is about textures and passed over\n"
         "part.obj:14: t vertexedit is not read: the surface is drawn as if it were not there");
     cage_finish(&cage);

@@ -234,7 +234,7 @@ static const struct {
 } VERSIONS[] = {
     ADDED(sheen_connect_options, size, native_threads, 128), /* 0.1 */
     ADDED(sheen_server, size, max_in_flight, 64),
-    ADDED(sheen_model_info, size, findings, 5400),
+    ADDED(sheen_model_info, size, patches, 5400),
     ADDED(sheen_request, size, window, 3304),
     ADDED(sheen_frame, size, threads, 3824),
     ADDED(sheen_stats, size, daemon_bytes, 848),

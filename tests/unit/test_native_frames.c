@@ -45,6 +45,24 @@ static void test_families_and_lights(void **state)
     close_devices(&devices);
 }
 
+/* Patches, a pole and an open mouth. */
+static void test_bottle(void **state)
+{
+    struct devices devices;
+    (void)state;
+    open_devices(&devices, "tests/models/bottle.bpt");
+    for (int view = VIEW_AROUND; view <= VIEW_BOTTOM; view += VIEW_BOTTOM - VIEW_AROUND) {
+        struct frame_request request = request_for(&devices.tables, WIDTH, HEIGHT);
+        char what[64];
+        scene_default_camera(&devices.tables, NULL, (enum default_view)view, WIDTH, HEIGHT,
+                             &request.camera);
+        struct difference found = difference_of(&devices, &request);
+        snprintf(what, sizeof what, "view %d", view);
+        assert_alike(&found, what);
+    }
+    close_devices(&devices);
+}
+
 static void test_patterns(void **state)
 {
     struct devices devices;
@@ -177,6 +195,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_families_and_lights),
+        cmocka_unit_test(test_bottle),
         cmocka_unit_test(test_patterns),
         cmocka_unit_test(test_images),
         cmocka_unit_test(test_one_sample_and_several_lights),

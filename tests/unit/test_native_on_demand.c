@@ -178,7 +178,7 @@ static void build_triangles(unsigned n, struct limit_tables *tables)
         used += (size_t)snprintf(text + used, room - used, "f %u %u %u\nf %u %u %u\n", a, a + 1,
                                  a + n + 2, a, a + n + 2, a + n + 1);
     }
-    build_as(text, used, false, tables);
+    build_as("scene.obj", text, used, false, tables);
     free(text);
 }
 

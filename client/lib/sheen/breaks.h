@@ -27,7 +27,8 @@ enum sheen_break_kind {
     SHEEN_BREAK_CREASE,    /* an infinitely sharp crease */
     SHEEN_BREAK_SEMISHARP, /* a crease of finite sharpness: smooth, and never out of tolerance */
     /* Two border edges that lie together: vertices that the file does not join, or two faces of an
-     * edge with more than two. */
+     * edge with more than two. Or a common curve of two patches across which only the curvature
+     * jumps. */
     SHEEN_BREAK_JOINT,
 };
 

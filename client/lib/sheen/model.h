@@ -69,6 +69,7 @@ struct sheen_model_info {
     char warnings[4096]; /* lines of text; "": none */
     uint32_t n_findings; /* entries of `findings`, at most one of each kind */
     struct sheen_finding findings[SHEEN_MAX_FINDINGS];
+    uint32_t patches; /* of a model of patches, which has no faces and vertices; else 0 */
 };
 #define SHEEN_MODEL_INFO_DEFAULTS                                                                  \
     ((struct sheen_model_info){.size = sizeof(struct sheen_model_info)})

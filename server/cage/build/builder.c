@@ -186,3 +186,22 @@ bool cage_builder_has_triangles_alone(const struct cage_builder *builder)
             return false;
     return cage->n_faces > 1;
 }
+
+bool cage_builder_patch(struct cage_builder *builder, const struct cage_patch *patch,
+                        struct error *error)
+{
+    struct cage *cage = &builder->cage;
+    if (cage->n_patches >= CAGE_MAX_PATCHES)
+        return too_many(builder, "patches", CAGE_MAX_PATCHES, error);
+    struct cage_patch *grown = room_for_one(cage->patch, cage->n_patches, builder->patch_capacity,
+                                            &builder->patch_capacity, sizeof *grown);
+    if (grown)
+        cage->patch = grown;
+    /* Every cage has face_start, also without faces. */
+    if (!cage->face_start)
+        cage->face_start = calloc(1, sizeof *cage->face_start);
+    if (!grown || !cage->face_start)
+        return no_memory(builder, "patches", cage->n_patches, error);
+    grown[cage->n_patches++] = *patch;
+    return true;
+}

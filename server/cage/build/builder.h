@@ -28,7 +28,7 @@ struct cage_builder {
     size_t n_face_vertices;
 
     size_t vertex_capacity, face_capacity, face_vertex_capacity;
-    size_t crease_capacity, corner_capacity, hole_capacity;
+    size_t crease_capacity, corner_capacity, hole_capacity, patch_capacity;
 };
 
 void cage_builder_finish(struct cage_builder *builder);
@@ -44,6 +44,10 @@ bool cage_builder_crease(struct cage_builder *builder, const struct cage_crease 
                          uint32_t line, struct error *error);
 bool cage_builder_corner(struct cage_builder *builder, const struct cage_corner *corner,
                          uint32_t line, struct error *error);
+/* Adds a patch; cage_check() checks its basis and points. */
+bool cage_builder_patch(struct cage_builder *builder, const struct cage_patch *patch,
+                        struct error *error);
+
 bool cage_builder_hole(struct cage_builder *builder, uint32_t face, uint32_t line,
                        struct error *error);
 

@@ -5,6 +5,7 @@
 #include "server/cage/hash.h"
 #include "server/cage/build/bodies.h"
 #include "server/cage/edges.h"
+#include "server/cage/joints.h"
 
 enum {
     /* The face has an edge with more than two faces, or with two in the same direction. */
@@ -354,19 +355,43 @@ static void inspection_finish(struct inspection *inspection)
     free(inspection->body);
 }
 
+static bool inspect_patches(struct cage *cage, const char *name)
+{
+    struct cage_joints joints;
+    if (!cage_joints_find(&joints, cage))
+        return false;
+    const struct cage_finding finding = {
+        CAGE_FOUND_WOUND, joints.n_against,
+        joints.n_against ? cage->patch[joints.first_against].line : 0, CAGE_NO_FACE};
+    if (joints.n_against == 1)
+        cage_found(cage, &finding, name,
+                   "a patch is wound against its neighbour; the edge between them is a border");
+    else if (joints.n_against > 1)
+        cage_found(cage, &finding, name,
+                   "a patch is wound against its neighbours; %u edges in all lie between such "
+                   "patches and are borders",
+                   joints.n_against);
+    cage_joints_finish(&joints);
+    return true;
+}
+
+static bool inspect_faces(struct inspection *inspection)
+{
+    find_triangles(inspection);
+    if (!find_unwelded(inspection) || !inspection_init(inspection))
+        return false;
+    cage_each_edge(&inspection->edges, inspection->cage->n_vertices, mark_edge, inspection);
+    if (!find_repeated(inspection))
+        return false;
+    find_winding(inspection);
+    return find_inside_out(inspection);
+}
+
 void cage_inspect(struct cage_builder *builder, const char *name)
 {
     struct inspection inspection = {.cage = &builder->cage, .builder = builder, .name = name};
-    find_triangles(&inspection);
-    bool ok = find_unwelded(&inspection) && inspection_init(&inspection);
-    if (ok) {
-        cage_each_edge(&inspection.edges, inspection.cage->n_vertices, mark_edge, &inspection);
-        ok = find_repeated(&inspection);
-    }
-    if (ok) {
-        find_winding(&inspection);
-        ok = find_inside_out(&inspection);
-    }
+    bool ok = builder->cage.n_patches > 0 ? inspect_patches(inspection.cage, name)
+                                          : inspect_faces(&inspection);
     if (!ok)
         cage_warn(inspection.cage, "%s: not enough memory to look for what is probably not meant",
                   name);

@@ -15,6 +15,8 @@
  *   faces alone are a pillow, which is a body;
  * - closed bodies with a negative volume, except probable hollows (bodies.h).
  *
+ * Of a model of patches: boundary curves that two patches traverse in the same direction.
+ *
  * Does not change the cage's elements. Takes n log n time in the number of corners and about 30
  * bytes for each. When memory is short, one warning says so. */
 void cage_inspect(struct cage_builder *builder, const char *name);

@@ -62,8 +62,7 @@ static bool scan_index(const char **at, const char *end, int64_t *index)
     return true;
 }
 
-/* Parses v, v/t, v//n or v/t/n. Texture and normal indices must be numbers, but are not used. */
-static bool scan_face_corner(const struct obj_field *field, int64_t *vertex)
+bool obj_scan_corner(const struct obj_field *field, int64_t *vertex)
 {
     const char *p = field->text, *end = p + field->length;
     int64_t unused;
@@ -89,7 +88,7 @@ static bool read_face(struct obj_reader *reader)
     struct obj_field field;
     for (size_t corner = 1; obj_text_field(&reader->text, &field); corner++) {
         int64_t index;
-        if (!scan_face_corner(&field, &index))
+        if (!obj_scan_corner(&field, &index))
             return obj_fail(reader, "face corner %zu is not v, v/t, v//n or v/t/n: '%.*s'", corner,
                             OBJ_SHOWN(&field));
         if (index == 0)
@@ -137,7 +136,10 @@ static bool read_statement(struct obj_reader *reader)
         return read_face(reader);
     if (obj_field_is(&keyword, "t"))
         return obj_read_tag(reader);
-    if (!is_passed_over(&keyword) && !reader->warned_keyword) {
+    bool is_known;
+    if (!obj_read_surface(reader, &keyword, &is_known))
+        return false;
+    if (!is_known && !is_passed_over(&keyword) && !reader->warned_keyword) {
         reader->warned_keyword = true;
         cage_warn(&reader->builder->cage,
                   "%s:%u: unknown keyword '%.*s' passed over, and any others", reader->name,
@@ -153,6 +155,8 @@ static bool read_all(struct obj_reader *reader)
             return false;
         obj_text_next_line(&reader->text);
     }
+    if (!obj_end_surfaces(reader))
+        return false;
     const struct cage_builder *builder = reader->builder;
     const struct cage *cage = &builder->cage;
     for (size_t f = 0; f < cage->n_faces; f++) {
@@ -195,10 +199,11 @@ bool obj_read(struct cage_builder *builder, const void *bytes, size_t size, cons
     bool ok = read_all(&reader);
     builder->plain_triangles = cage_builder_has_triangles_alone(builder);
     const struct cage *cage = &builder->cage;
-    if (ok && cage->n_vertices == 0 && cage->n_faces == 0)
+    if (ok && cage->n_vertices == 0 && cage->n_faces == 0 && cage->n_patches == 0)
         ok =
             error_set(error, ERROR_MODEL,
                       "%s: is not an OBJ file: it has no vertex and no face. " OTHER_FORMATS, name);
+    obj_surface_finish(&reader.surface);
     freelocale(c_locale);
     return ok;
 }

@@ -7,6 +7,25 @@
 #include "server/cage/build/builder.h"
 #include "server/cage/read/obj_text.h"
 
+/* Numbers of one kind that a free-form surface has so far. */
+struct obj_numbers {
+    double *value;
+    size_t n, room;
+};
+
+/* A free-form surface (obj_surface.c), and the settings for those that follow. */
+struct obj_surface {
+    struct obj_field type; /* of cstype; length 0: none was given */
+    bool is_rational;
+    uint32_t type_line;
+    double degree[2]; /* of deg; 0: none was given */
+    uint32_t line;    /* of its surf; 0: outside of surfaces */
+    double range[4];  /* u from and to, v from and to */
+    uint32_t *point;
+    size_t n_points, point_room;
+    struct obj_numbers knots[2];
+};
+
 struct obj_reader {
     struct obj_text text;
     struct cage_builder *builder;
@@ -14,6 +33,7 @@ struct obj_reader {
     locale_t c_locale;
     uint32_t line; /* where the current statement starts */
     bool warned_keyword, warned_facevarying, warned_negative;
+    struct obj_surface surface;
     struct error *error;
 };
 
@@ -23,6 +43,16 @@ struct obj_reader {
 /* Sets ERROR_MODEL with the text "name:line: ..." and returns false. */
 bool obj_fail(const struct obj_reader *reader, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
+
+/* Parses v, v/t, v//n or v/t/n. Texture and normal indices must be numbers, but are not used. */
+bool obj_scan_corner(const struct obj_field *field, int64_t *vertex);
+
+/* Read the rest of a line with a keyword of free-form surfaces (Wavefront's OBJ 3.0: cstype, deg, surf, parm, trim, hole, end), and set
+ * *is_known to whether it is one. False with ERROR_MODEL, which names what sheen does not draw. */
+bool obj_read_surface(struct obj_reader *reader, const struct obj_field *keyword, bool *is_known);
+/* At the end of the file: false with ERROR_MODEL if a surface has no end, or if there are faces, too. */
+bool obj_end_surfaces(struct obj_reader *reader);
+void obj_surface_finish(struct obj_surface *surface);
 
 /* Reads the rest of a line that begins with "t": an OpenSubdiv tag. Any blanks and any length are
  * accepted. A crease may have one sharpness for all edges, one for each edge, or, as OpenSubdiv

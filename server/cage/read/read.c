@@ -5,9 +5,11 @@
 #include "protocol/model_format.h"
 #include "server/cage/build/builder.h"
 #include "server/cage/build/inspect.h"
+#include "server/cage/read/bpt.h"
 #include "server/cage/read/gltf/gltf.h"
 #include "server/cage/build/repair.h"
 #include "server/cage/read/obj.h"
+#include "server/cage/read/patches.h"
 #include "server/cage/read/usd/usd.h"
 #include "server/cage/build/weld.h"
 
@@ -24,8 +26,11 @@ static const char *shown_name(const char *name)
 }
 
 typedef bool reader(struct cage_builder *, const void *, size_t, const char *, struct error *);
-static reader *const READERS[] = {
-    [MODEL_OBJ] = obj_read, [MODEL_GLTF] = gltf_read, [MODEL_USD] = usd_read};
+static reader *const READERS[] = {[MODEL_OBJ] = obj_read,
+                                  [MODEL_GLTF] = gltf_read,
+                                  [MODEL_USD] = usd_read,
+                                  [MODEL_BPT] = bpt_read,
+                                  [MODEL_PATCHES] = patches_read};
 
 /* Repair follows welding, because it also removes corners that welding has made equal. */
 static bool weld_and_repair(struct cage_builder *builder, const char *name, struct error *error)

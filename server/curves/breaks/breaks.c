@@ -45,7 +45,9 @@ static const struct surface_edge *edge_of(const struct breaks *breaks, size_t i,
         return &breaks->joints[i - breaks->list.n_creases];
     }
     const struct surface_edge *edge = &breaks->list.creases[i];
-    *kind = edge->levels == LIMIT_BORDER_SHARP ? BREAK_CREASE : BREAK_SEMISHARP;
+    *kind = edge->is_bend                        ? BREAK_JOINT
+            : edge->levels == LIMIT_BORDER_SHARP ? BREAK_CREASE
+                                                 : BREAK_SEMISHARP;
     return edge;
 }
 

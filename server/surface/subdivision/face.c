@@ -4,6 +4,7 @@
 
 #include "server/surface/subdivision/adjacency.h"
 #include "server/surface/bound.h"
+#include "server/surface/regular.h"
 #include "server/surface/subdivision/corner.h"
 #include "server/surface/subdivision/crease.h"
 #include "server/surface/subdivision/settle.h"
@@ -11,51 +12,11 @@
 #include "server/surface/subdivision/strip.h"
 #include "server/surface/texels.h"
 
-/* The surface at a corner of a bicubic patch, by the 3 x 3 points about (x,y). */
-static struct vec corner_point(const struct vec grid[16], int x, int y)
-{
-    static const double weight[3] = {1.0 / 6, 2.0 / 3, 1.0 / 6};
-    struct vec sum = {0, 0, 0};
-    for (int k = 0; k < 9; k++)
-        sum =
-            vec_mad(sum, weight[k / 3] * weight[k % 3], grid[4 * (y + k / 3 - 1) + x + k % 3 - 1]);
-    return sum;
-}
-
-static void write_corner(struct limit_head *head, int corner, struct vec p)
-{
-    head->corner[0][corner] = (float)p.x;
-    head->corner[1][corner] = (float)p.y;
-    head->corner[2][corner] = (float)p.z;
-}
-
-/* The radius of a bound also contains the corners' rounded coordinates. */
-static void write_head(struct face_builder *b, uint32_t node, const struct vec first[16],
-                       const struct vec last[16])
-{
-    struct limit_head *head = &b->tables->heads[node];
-    memset(head->frame, 0, sizeof head->frame);
-    head->frame[3] = 1;
-    for (int k = 0; k < 4; k++)
-        write_corner(head, k, corner_point(k < 2 ? first : last, k & 1 ? 2 : 1, k < 2 ? 1 : 2));
-}
-
 /* Builds a REGULAR node of 16 control points; while measuring, only counts it. */
 static void build_patch(struct face_builder *b, uint32_t node, struct vec grid[4][4])
 {
-    if (b->tables) {
-        struct limit_node *out = &b->tables->nodes[node];
-        struct vec centre = regular_centre(&grid[0][0]);
-        out->kind = LIMIT_REGULAR;
-        out->origin[0] = centre.x;
-        out->origin[1] = centre.y;
-        out->origin[2] = centre.z;
-        out->first = b->next.texel;
-        b->tables->whole[node] = bound_of_grid(&grid[0][0], 4, false, true);
-        write_head(b, node, &grid[0][0], &grid[0][0]);
-        if (b->tables->texels)
-            texels_write_patch(&grid[0][0], b->tables->texels + b->next.texel);
-    }
+    if (b->tables)
+        regular_write(b->tables, node, &grid[0][0], b->next.texel);
     b->next.texel += LIMIT_PATCH_TEXELS;
     b->count[LIMIT_REGULAR]++;
 }
@@ -101,9 +62,9 @@ static void write_corner_whole(struct face_builder *b, uint32_t node, const stru
     bound.radius = (float)(reach * 1.000001);
     b->tables->whole[node] = bound;
     struct limit_head *head = &b->tables->heads[node];
-    write_corner(head, 0, (struct vec){0, 0, 0});
+    regular_write_corner(head, 0, (struct vec){0, 0, 0});
     for (int k = 1; k < 4; k++)
-        write_corner(head, k, corner_point(grid, k & 1 ? 2 : 1, k < 2 ? 1 : 2));
+        regular_write_corner(head, k, regular_corner_point(grid, k & 1 ? 2 : 1, k < 2 ? 1 : 2));
 }
 
 static void build_corner(struct face_builder *b, uint32_t node, const struct quad *quad,
@@ -155,7 +116,7 @@ static void build_strip(struct face_builder *b, uint32_t node, const struct quad
         out->first = b->next.texel;
         strip_points(&turned, levels, whole, patch, out->origin);
         b->tables->whole[node] = bound_of_grid(whole, 4, false, true);
-        write_head(b, node, patch[levels], patch[0]);
+        regular_write_head(b->tables, node, patch[levels], patch[0]);
         for (unsigned n = 0; n <= levels && b->tables->texels; n++) {
             texels_write_patch(patch[n],
                                b->tables->texels + b->next.texel + n * LIMIT_PATCH_TEXELS);
@@ -311,16 +272,6 @@ static void start_root(struct face_builder *b, uint32_t ptex)
     if (b->tables->texels)
         b->tables->bound_first[ptex] = b->next.bound;
     b->tables->adjacency[ptex] = adjacency_of(b->plan, ptex);
-}
-
-struct vec regular_centre(struct vec grid[16])
-{
-    struct vec centre = {0, 0, 0};
-    for (int k = 0; k < 16; k++)
-        centre = vec_mad(centre, 1.0 / 16, grid[k]);
-    for (int k = 0; k < 16; k++)
-        grid[k] = vec_sub(grid[k], centre);
-    return centre;
 }
 
 static bool touches_ngon(const struct topology *t, uint32_t c)

@@ -28,7 +28,4 @@ void face_build(struct face_builder *builder, uint32_t ptex);
 bool face_quads(const struct limit_plan *plan, uint32_t ptex, struct ring_cache *rings,
                 struct arena *arena, struct quad quad[4]);
 
-/* Moves the mean of a patch's points to zero and returns it: the origin of a REGULAR node. */
-struct vec regular_centre(struct vec grid[16]);
-
 #endif

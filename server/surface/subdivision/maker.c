@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "server/surface/bound.h"
+#include "server/surface/regular.h"
 #include "server/surface/subdivision/face.h"
 #include "server/surface/subdivision/strip.h"
 

@@ -1,0 +1,220 @@
+/* Free-form surfaces of OBJ: what is read of them, and one clear line, with the place, for what is not drawn or damaged. */
+#include <math.h>
+#include <stdio.h>
+
+#include "tests/unit/cage_expect.h"
+
+/* A grid of 4 x 4 vertices, eight lines. */
+#define GRID                                                                                       \
+    "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 3 0 0\nv 0 1 0\nv 1 1 1\nv 2 1 2\nv 3 1 0\n"                     \
+    "v 0 2 0\nv 1 2 3\nv 2 2 1\nv 3 2 0\nv 0 3 0\nv 1 3 0\nv 2 3 0\nv 3 3 0\n"
+#define POINTS "1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16"
+#define BEZIER "cstype bezier\ndeg 3 3\n"
+#define ENDS "parm u 0 1\nparm v 0 1\nend\n"
+
+static void expect_grid(const struct cage *cage, uint32_t basis)
+{
+    static const double z[16] = {0, 0, 0, 0, 0, 1, 2, 0, 0, 3, 1, 0, 0, 0, 0, 0};
+    assert_int_equal(cage->n_patches, 1);
+    assert_int_equal(cage->n_vertices, 0);
+    assert_int_equal(cage->patch[0].basis, basis);
+    for (int k = 0; k < 16; k++) {
+        const double *p = cage->patch[0].point[k];
+        assert_true(p[0] == k % 4 && p[1] == k / 4 && p[2] == z[k]);
+    }
+}
+
+static void test_bezier(void **state)
+{
+    struct cage cage;
+    (void)state;
+    read_obj(&cage, GRID BEZIER "surf 0 1 0 1 " POINTS "\n" ENDS);
+    expect_grid(&cage, CAGE_BEZIER);
+    assert_int_equal(cage.patch[0].line, 19);
+    assert_null(cage.warnings);
+    cage_finish(&cage);
+}
+
+/* Texture and normal indices, indices that count back, a line that continues, parm in two lines; and curves beside it. */
+static void test_forms_of_lines(void **state)
+{
+    struct cage cage;
+    (void)state;
+    read_obj(&cage, GRID "vp 0 0\ncstype bezier\ndeg 3\ncurv2 1 1\nparm u 0 1\nend\n" BEZIER
+                         "surf 0 1 0 1 1/1 2//3 3/1/2 4 -12 -11 -10 -9 \\\n9 10 11 12 13 14 15 16\n"
+                         "parm u 0\nparm v 0 1\nparm u 1\nend\nctech cparm 1\nstech cparma 1 1\n");
+    expect_grid(&cage, CAGE_BEZIER);
+    assert_null(cage.warnings);
+    cage_finish(&cage);
+}
+
+/* Between uniform knots a bicubic keeps its points bit by bit. */
+static void test_uniform_bspline(void **state)
+{
+    struct cage cage;
+    (void)state;
+    read_obj(&cage, GRID "cstype bspline\ndeg 3 3\nsurf 0 1 3 4 " POINTS "\n"
+                         "parm u -3 -2 -1 0 1 2 3 4\nparm v 0 1 2 3 4 5 6 7\nend\n");
+    expect_grid(&cage, CAGE_BSPLINE);
+    cage_finish(&cage);
+}
+
+/* Clamped knots make the Bezier patch with the same points. */
+static void test_clamped_bspline(void **state)
+{
+    struct cage cage;
+    (void)state;
+    read_obj(&cage, GRID "cstype bspline\ndeg 3 3\nsurf 0 2 0 1 " POINTS "\n"
+                         "parm u 0 0 0 0 2 2 2 2\nparm v 0 0 0 0 1 1 1 1\nend\n");
+    expect_grid(&cage, CAGE_BEZIER);
+    cage_finish(&cage);
+}
+
+/* Bezier pieces in a row: two of degree 1 along u; and a part of them by the range. */
+static void test_pieces_and_range(void **state)
+{
+    struct cage cage;
+    (void)state;
+    read_obj(&cage, "v 0 0 0\nv 1 0 0\nv 3 0 0\nv 0 1 0\nv 1 1 0\nv 3 1 0\ncstype bezier\ndeg 1 1\n"
+                    "surf 0.5 2 0 1 1 2 3 4 5 6\nparm u 0 1 2\nparm v 0 1\nend\n");
+    assert_int_equal(cage.n_patches, 2);
+    assert_true(cage.patch[0].point[0][0] == 0.5 && cage.patch[0].point[3][0] == 1);
+    assert_true(cage.patch[1].point[0][0] == 1 && cage.patch[1].point[15][0] == 3);
+    assert_true(cage.patch[1].point[15][1] == 1);
+    cage_finish(&cage);
+}
+
+/* --weld joins vertices of faces; there are none. */
+static void test_weld(void **state)
+{
+    struct cage cage;
+    (void)state;
+    read_obj(&cage, GRID BEZIER "surf 0 1 0 1 " POINTS "\n" ENDS "t weld 0/0/0\n");
+    expect_grid(&cage, CAGE_BEZIER);
+    cage_finish(&cage);
+}
+
+static const struct {
+    const char *text, *words;
+} DAMAGED[] = {
+    {"surf 0 1 0 1 1\n", ":17: surf comes before any cstype"},
+    {"cstype\n", ":17: cstype has no type"},
+    {"cstype rat\n", ":17: cstype rat has no type"},
+    {"cstype rat bezier\ndeg 3 3\nsurf 0 1 0 1 1\n",
+     ":19: a rational surface (cstype rat of line 17): sheen draws surfaces without weights"},
+    {"cstype taylor\ndeg 3 3\nsurf 0 1 0 1 1\n",
+     ":19: a surface of cstype taylor (line 17): sheen draws bezier and bspline"},
+    {"cstype cardinal\ndeg 3 3\nsurf 0 1 0 1 1\n", ":19: a surface of cstype cardinal"},
+    {"cstype bmatrix\ndeg 3 3\nsurf 0 1 0 1 1\n", ":19: a surface of cstype bmatrix"},
+    {"cstype \1\ndeg 3 3\nsurf 0 1 0 1 1\n", ":19: a surface of cstype"},
+    {"cstype bezier\nsurf 0 1 0 1 1\n", ":18: surf comes before a deg with two degrees"},
+    {"cstype bezier\ndeg 3\nsurf 0 1 0 1 1\n", ":19: surf comes before a deg with two degrees"},
+    {"cstype bezier\ndeg x 3\n", ":18: a degree of deg is no finite number: 'x'"},
+    {"cstype bezier\ndeg 4 3\nsurf 0 1 0 1 1\n",
+     ":19: a surface of degree 4 along u: sheen draws degrees 1 to 3"},
+    {"cstype bspline\ndeg 3 5\nsurf 0 1 0 1 1\n", ":19: a surface of degree 5 along v"},
+    {"cstype bezier\ndeg -1 3\nsurf 0 1 0 1 1\n", ":19: a surface of degree -1 along u"},
+    {"cstype bezier\ndeg 2.5 3\nsurf 0 1 0 1 1\n", ":19: a surface of degree 2.5 along u"},
+    {BEZIER "surf\n", ":19: surf has 0 numbers, needs its range: u from and to, v from and to"},
+    {BEZIER "surf 0 1 0\n", ":19: surf has 3 numbers, needs its range"},
+    {BEZIER "surf 0 1 0 x 1\n", ":19: a number of surf's range is no finite number: 'x'"},
+    {BEZIER "surf 0 nan 0 1 1\n", ":19: a number of surf's range is no finite number: 'nan'"},
+    {BEZIER "surf 0 1e31 0 1 1\n", ":19: a number of surf's range is 1e+31, beyond the largest"},
+    {BEZIER "surf 0 1 0 1 x\n", ":19: control point 1 is not v, v/t, v//n or v/t/n: 'x'"},
+    {BEZIER "surf 0 1 0 1 1 2/x\n", ":19: control point 2 is not"},
+    {BEZIER "surf 0 1 0 1 1 0\n",
+     ":19: control point 2 refers to vertex 0, but 16 vertices stand before it"},
+    {BEZIER "surf 0 1 0 1 17\n", ":19: control point 1 refers to vertex 17"},
+    {BEZIER "surf 0 1 0 1 -17\n", ":19: control point 1 refers to vertex -17"},
+    {BEZIER "surf 0 1 0 1 99999999999999999999\n", ":19: control point 1 refers to vertex"},
+    {BEZIER "surf 0 1 0 1 1\nsurf 0 1 0 1 1\n", ":20: the surface of line 19 has no end"},
+    {BEZIER "surf 0 1 0 1 " POINTS "\nparm u 0 1\nparm v 0 1\n",
+     "the file ends in the surface of line 19"},
+    {BEZIER "surf 0 1 0 1 " POINTS "\nparm w 0 1\n", ":20: parm needs u or v"},
+    {BEZIER "surf 0 1 0 1 " POINTS "\nparm\n", ":20: parm needs u or v"},
+    {BEZIER "surf 0 1 0 1 " POINTS "\nparm u 0 x\n",
+     ":20: a number of parm is no finite number: 'x'"},
+    {BEZIER "surf 0 1 0 1 " POINTS "\nparm u 0 inf\n", ":20: a number of parm is no finite number"},
+    {BEZIER "surf 0 1 0 1 " POINTS "\nend\n", ":20: parm u has 0 numbers, needs at least 2"},
+    {BEZIER "surf 0 1 0 1 " POINTS "\nparm u 0 1\nend\n", ":21: parm v has 0 numbers"},
+    {BEZIER "surf 0 1 0 1 " POINTS "\nparm u 1 0\nparm v 0 1\nend\n",
+     ":22: parm u decreases from 1 to 0"},
+    {BEZIER "surf 0 1 0 1 " POINTS "\nparm u 0 0\nparm v 0 1\nend\n",
+     ":22: parm u has 0 more than 1 time"},
+    {BEZIER "surf 0 1 0 1 1 2 3\n" ENDS,
+     ":22: the surface of line 19 has 3 control points, but deg and parm make 4 x 4"},
+    {BEZIER "surf 0 1 0 1 " POINTS " 1\n" ENDS, "has 17 control points"},
+    {BEZIER "surf 1 0 0 1 " POINTS "\n" ENDS, "surf's range of u goes from 1 to 0"},
+    {BEZIER "surf 0 1 1 1 " POINTS "\n" ENDS, "surf's range of v goes from 1 to 1"},
+    {BEZIER "surf 0 2 0 1 " POINTS "\n" ENDS,
+     "surf's range of u, 0 to 2, is not within parm's, 0 to 1"},
+    {BEZIER "surf 0 1 -1 1 " POINTS "\n" ENDS, "surf's range of v, -1 to 1, is not within"},
+    {BEZIER "surf 1 1.0000001 0 1 " POINTS "\n" ENDS, "surf's range of u is empty"},
+    {BEZIER "surf 0 1 0 1 " POINTS "\ntrim 0 1 1\n",
+     ":20: a surface with a trim: sheen draws whole surfaces only"},
+    {BEZIER "surf 0 1 0 1 " POINTS "\nhole 0 1 1\n", ":20: a surface with a hole"},
+    {BEZIER "surf 0 1 0 1 " POINTS "\n" ENDS "f 1 2 6 5\n",
+     ":19: a surface in a file with 1 faces: sheen draws either"},
+    {"f 1 2 6 5\n" BEZIER "surf 0 1 0 1 " POINTS "\n" ENDS,
+     ":20: a surface in a file with 1 faces"},
+    {"cstype bspline\ndeg 3 3\nsurf 0 1 0 1 " POINTS
+     "\nparm u 0 0 0 0 1 1 1\nparm v 0 0 0 0 1 1 1 1\nend\n",
+     "parm u has 7 numbers, needs at least 8"},
+    {"cstype bspline\ndeg 3 3\nsurf 0 1 0 1 " POINTS
+     "\nparm u 0 0 0 0 0 1 1 1 1\nparm v 0 0 0 0 1 1 1 1\nend\n",
+     "parm u has 0 more than 4 times"},
+    {"cstype bspline\ndeg 3 3\nsurf 0 1 0 1 " POINTS
+     "\nparm u 0 0 0 0 1 1 1 0\nparm v 0 0 0 0 1 1 1 1\nend\n",
+     "parm u decreases from 1 to 0"},
+    {"cstype bspline\ndeg 3 3\nsurf 0 1 0 1 " POINTS
+     "\nparm u 0 0 0 1 1 1 1 2\nparm v 0 0 0 0 1 1 1 1\nend\n",
+     "is not within parm's, 1 to 1"},
+    {"cstype bspline\ndeg 3 3\nsurf -1 1 0 1 " POINTS
+     "\nparm u -3 -2 -1 0 1 2 3 4\nparm v 0 0 0 0 1 1 1 1\nend\n",
+     "surf's range of u, -1 to 1, is not within parm's, 0 to 1"},
+    {"cstype bspline\ndeg 1 1\nsurf 0 1 0 1 1 2 3 4\nparm u 0 0 1 1\nend\n",
+     "parm v has 0 numbers, needs at least 4"},
+    {"t crease 2/1/0 0 1 2\n" BEZIER "surf 0 1 0 1 " POINTS "\n" ENDS, "refers to vertex 0"},
+};
+
+static void test_damage(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < sizeof DAMAGED / sizeof *DAMAGED; i++) {
+        struct cage cage;
+        struct error error = {0};
+        char text[1000];
+        int size = snprintf(text, sizeof text, "%s%s", GRID, DAMAGED[i].text);
+        if (cage_read(&cage, text, (size_t)size, "part.obj", &error))
+            fail_msg("accepted: %s", DAMAGED[i].text);
+        assert_int_equal(error.kind, ERROR_MODEL);
+        if (!strstr(error.text, DAMAGED[i].words) || strchr(error.text, '\n'))
+            fail_msg("'%s' says '%s', not '%s'", DAMAGED[i].text, error.text, DAMAGED[i].words);
+    }
+}
+
+/* Every shorter part of a file is refused with one line. */
+static void test_cut_off(void **state)
+{
+    static const char whole[] = GRID BEZIER "surf 0 1 0 1 " POINTS "\n" ENDS;
+    (void)state;
+    for (size_t size = 1; size + 2 < sizeof whole - 1; size++) {
+        struct cage cage;
+        struct error error = {0};
+        if (cage_read(&cage, whole, size, "part.obj", &error))
+            fail_msg("accepted the first %zu bytes", size);
+        assert_int_equal(error.kind, ERROR_MODEL);
+        assert_null(strchr(error.text, '\n'));
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_bezier),           cmocka_unit_test(test_forms_of_lines),
+        cmocka_unit_test(test_uniform_bspline),  cmocka_unit_test(test_clamped_bspline),
+        cmocka_unit_test(test_pieces_and_range), cmocka_unit_test(test_weld),
+        cmocka_unit_test(test_damage),           cmocka_unit_test(test_cut_off),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
