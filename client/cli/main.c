@@ -92,6 +92,11 @@ int main(int argc, char **argv)
         printf("sheen %s\n", sheen_version());
         return end_output(0);
     }
+    if (strncmp(name, "--help=", 7) == 0 || strncmp(name, "--version=", 10) == 0) {
+        fprintf(stderr, "sheen: %.*s takes no value; see sheen --help\n", (int)strcspn(name, "="),
+                name);
+        return EXIT_WRONG_USAGE;
+    }
     const struct command *command = command_of(name);
     if (command)
         return run(command, argc - 1, argv + 1);

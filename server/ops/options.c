@@ -172,26 +172,51 @@ static bool is_config(const struct option_row *row)
     return row->offset == offsetof(struct settings, config);
 }
 
+/* Tells what is wrong with an option that getopt does not take. */
+static void refuse(bool lacks_value, const char *given, const struct option_row *rows, size_t n,
+                   struct error *error)
+{
+    const size_t length = strcspn(given, "=");
+    size_t n_names = 0;
+    const struct option_row *exact = NULL;
+    for (size_t i = 0; i < n && length > 2; i++) {
+        if (strncmp(given + 2, rows[i].name, length - 2) != 0)
+            continue;
+        n_names++;
+        if (strlen(rows[i].name) == length - 2)
+            exact = &rows[i];
+    }
+    if (lacks_value)
+        error_set(error, ERROR_REQUEST, "%s needs a value; sheend --help lists the options", given);
+    else if (exact)
+        error_set(error, ERROR_REQUEST, "--%s takes no value", exact->name);
+    else if (n_names > 1)
+        error_set(error, ERROR_REQUEST,
+                  "'%s' may be %zu options: write more of it; sheend --help lists them", given,
+                  n_names);
+    else
+        error_set(error, ERROR_REQUEST, "'%s' is no option; sheend --help lists them", given);
+}
+
 /* Walks the command line. The first walk takes --config and the options that act at once; the
  * second takes all others, so that they replace the values of the file. */
 static enum options_result walk(int argc, char **argv, struct settings *settings, bool first,
                                 struct error *error)
 {
+    enum { FIRST_LONG = 256 }; /* above all letters */
     struct option longs[OPTION_MAX_ROWS + 1] = {{0}};
     bool seen[OPTION_MAX_ROWS] = {false};
     size_t n;
     const struct option_row *rows = option_rows(&n);
     for (size_t i = 0; i < n; i++)
+        /* Each has a value of its own: else getopt takes the first letters of several as the first of them. */
         longs[i] = (struct option){rows[i].name, rows[i].argument ? required_argument : no_argument,
-                                   NULL, 0};
+                                   NULL, FIRST_LONG + (int)i};
     optind = 1;
     opterr = 0;
     for (int c, index; (c = getopt_long(argc, argv, ":", longs, &index)) != -1;) {
-        if (c != 0) {
-            error_set(error, ERROR_REQUEST,
-                      c == ':' ? "%s needs a value; sheend --help lists the options"
-                               : "'%s' is no option; sheend --help lists them",
-                      argv[optind - 1]);
+        if (c < FIRST_LONG) {
+            refuse(c == ':', argv[optind - 1], rows, n, error);
             return OPTIONS_WRONG;
         }
         const struct option_row *row = &rows[index];

@@ -34,6 +34,7 @@ class Options(unittest.TestCase):
 
     def test_wrong_usage(self):
         for words, *arguments in (("'--nothing' is no option; ", "--nothing"), ("stray", "stray"),
+                                  ("--help takes no value", "--help=1"), ("'--max' may be ", "--max", "3"),
                                   ("'--listn' is no option; ", "--listn", "x"),
                                   ("--device needs a value; ", "--device"), ("device", "--device", "fast"),
                                   ("memory-budget", "--memory-budget", "much"),

@@ -2,8 +2,11 @@
 import json
 import os
 import resource
+import signal
 import struct
+import subprocess
 import tempfile
+import time
 import unittest
 
 import wire
@@ -61,6 +64,28 @@ class Turntable(DaemonCase):
         done = sheen("stream", FENDER, "--frames", "2", *SMALL, "--json", "--server",
                      self.daemon.unix)
         self.assertNotIn("written", done.stdout)
+
+    def test_an_interrupt_ends_it_with_the_table(self):
+        """Ctrl-C goes to the whole process group: to a private daemon, too."""
+        for server in (("--server", self.daemon.unix), ("--device", "software")):
+            for form in ((), ("--json",)):
+                with self.subTest(server=server, form=form):
+                    pattern = os.path.join(self.folder, "a_%d.png")
+                    process = subprocess.Popen([SHEEN, "stream", FENDER, "--frames", "100000", "-o", pattern, *SMALL, *server,
+                                                *form], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                                               start_new_session=True)
+                    while len(os.listdir(self.folder)) < 5:
+                        self.assertIsNone(process.poll())
+                        time.sleep(0.02)
+                    os.killpg(process.pid, signal.SIGINT)
+                    said, complaint = process.communicate(timeout=60)
+                    self.assertEqual(process.returncode, -signal.SIGINT, complaint)
+                    n = json.loads(said)["written"] if form else int(said.split(" ")[0])
+                    self.assertIn("total_us" if form else "frames per second", said)
+                    self.assertEqual(sorted(os.listdir(self.folder)), sorted(f"a_{i}.png" for i in range(n)))
+                    self.assertTrue(5 <= n < 100000, n)
+                    for name in os.listdir(self.folder):
+                        os.remove(os.path.join(self.folder, name))
 
     def test_none_is_lost_or_written_twice(self):
         """The connection is interrupted again and again."""

@@ -195,9 +195,35 @@ static const struct option_row *nearest(const char *given, const struct option_r
     return found;
 }
 
+/* Refuses the first letters of several options. False if `given` is not that. */
+static bool is_ambiguous(const char *given, const struct option_row *const *rows, size_t n,
+                         char *why)
+{
+    char names[OPTIONS_WHY_BYTES / 2] = "";
+    size_t used = 0, n_names = 0, length = strcspn(given, "=");
+    if (strncmp(given, "--", 2) != 0 || length < 3)
+        return false;
+    for (size_t i = 0; i < n; i++) {
+        if (strncmp(given + 2, rows[i]->name, length - 2) != 0)
+            continue;
+        n_names++;
+        int written = snprintf(names + used, sizeof(names) - used, " --%s", rows[i]->name);
+        if (written > 0 && (size_t)written < sizeof(names) - used)
+            used += (size_t)written;
+        else
+            names[used] = 0;
+    }
+    if (n_names > 1)
+        options_refuse(why, "%.*s may be%s: write more of it", (int)(length < 60 ? length : 60),
+                       given, names);
+    return n_names > 1;
+}
+
 static bool refuse_unknown(const char *given, const struct option_row *const *rows, size_t n,
                            char *why)
 {
+    if (is_ambiguous(given, rows, n, why))
+        return false;
     const struct option_row *meant = nearest(given, rows, n);
     return meant ? options_refuse(why, "%.100s is no option here (did you mean --%s?)", given,
                                   meant->name)

@@ -1,4 +1,5 @@
 /* sheen stream: its options, and the order of its work. */
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -30,10 +31,13 @@ static enum sheen_status run_command(struct client *client, struct stream *strea
     status = client_init(client, options);
     if (!status)
         status = stream_frames(client, stream, options);
-    while (status && client_resume(client, options, &status))
+    while (status && !stream_is_interrupted() && client_resume(client, options, &status))
         status = stream_frames(client, stream, options);
     progress_clear(&client->progress);
-    if (status)
+    /* An interrupt ends the command's own daemon, too. What was drawn before is printed. */
+    if (stream_is_interrupted())
+        status = SHEEN_OK;
+    if (status || stream->n_drawn == 0)
         return status;
     stream_keep_drawn(stream, options->frames);
     if (!options->json) {
@@ -55,6 +59,7 @@ static int run(const struct options *options)
         stream.request.format = SHEEN_FORMAT_ZSTD;
     if (!(options->given & GIVEN_CLASS))
         stream.request.request_class = SHEEN_CLASS_INTERACTIVE;
+    stream_end_at_interrupt();
     stream.records = calloc(options->frames, sizeof(*stream.records));
     uint64_t *sorted = calloc(options->frames, sizeof(*sorted));
     enum sheen_status status = stream.records && sorted
@@ -64,7 +69,13 @@ static int run(const struct options *options)
     sheen_frame_finish(&stream.frame);
     free(sorted);
     free(stream.records);
-    return client_finish(&client, status);
+    const int code = client_finish(&client, status);
+    if (stream_is_interrupted()) { /* ends as every interrupted command does */
+        fflush(stdout);
+        signal(SIGINT, SIG_DFL);
+        raise(SIGINT);
+    }
+    return code;
 }
 
 static bool apply_frames(struct options *options, const char *value, char *why)
@@ -133,7 +144,8 @@ const struct command COMMAND_STREAM = {
     .name = "stream",
     .arguments = "MODEL --frames N [option]...",
     .summary = "Requests frames back to back, at most two in flight, and prints the time of each\n"
-               "stage; with -o writes the frames to files, as a turntable.",
+               "stage, also of those before Ctrl-C; with -o writes the frames to files, as a\n"
+               "turntable.",
     .tables = TABLES_LIST,
     .examples = "  sheen stream hood.obj --frames 100\n"
                 "  sheen stream hood.obj --frames 72 --orbit 5 -o hood_%04d.png\n"

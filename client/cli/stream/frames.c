@@ -1,6 +1,7 @@
 #include "client/cli/stream/frames.h"
 
 #include <math.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -14,6 +15,26 @@
 #define PROBE_PX 64
 #define IN_FLIGHT 2u    /* while a frame is transferred, the next request waits at the daemon */
 #define LIGHT_SWING 0.1 /* largest shift of the light, as a share of its u edge */
+
+static volatile sig_atomic_t interrupted;
+
+static void interrupt(int number)
+{
+    (void)number;
+    interrupted = 1;
+}
+
+void stream_end_at_interrupt(void)
+{
+    const struct sigaction action = {.sa_handler = interrupt,
+                                     .sa_flags = (int)(SA_RESETHAND | SA_RESTART)};
+    sigaction(SIGINT, &action, NULL);
+}
+
+bool stream_is_interrupted(void)
+{
+    return interrupted;
+}
 
 static void move(struct stream *stream, const struct options *options, uint32_t number)
 {
@@ -212,7 +233,7 @@ enum sheen_status stream_frames(struct client *client, struct stream *stream,
         status = sheen_get_server(client->session, &server, &client->error);
     uint32_t next = 0, n_in_flight = 0;
     uint32_t most = server.max_in_flight < IN_FLIGHT ? server.max_in_flight : IN_FLIGHT;
-    while (!status && n_answered(stream) < options->frames) {
+    while (!status && !interrupted && n_answered(stream) < options->frames) {
         while (next < options->frames && stream->records[next].state != WANTED)
             next++;
         if (next < options->frames && n_in_flight < most) {

@@ -41,6 +41,11 @@ struct stream {
     int64_t start_us, elapsed_us; /* without the first frame, which may wait for tables */
 };
 
+/* From now on the first SIGINT ends stream_frames() after the frame that it waits for; the second ends the
+ * process. */
+void stream_end_at_interrupt(void);
+bool stream_is_interrupted(void);
+
 /* Requests all frames that have no answer yet. After a failure it may be called again with a new
  * session. */
 enum sheen_status stream_frames(struct client *client, struct stream *stream,
