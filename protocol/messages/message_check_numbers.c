@@ -108,7 +108,7 @@ static bool check_alignment(const sheen_Alignment *alignment, char *text)
     const sheen_Vec3 *const vectors[] = {&alignment->x, &alignment->y, &alignment->z,
                                          &alignment->shift};
     bool is_right = is_quantity(alignment->rotation_deg) && is_quantity(alignment->rms_before) &&
-                    is_quantity(alignment->rms_after);
+                    is_quantity(alignment->rms_after) && alignment->free <= 6;
     for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++)
         is_right = is_right && isfinite(vectors[i]->x) && isfinite(vectors[i]->y) &&
                    isfinite(vectors[i]->z);

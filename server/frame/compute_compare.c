@@ -112,6 +112,8 @@ static sheen_Alignment alignment_of(const struct comparison_result *result)
         .rotation_deg = result->rotation_deg,
         .rms_before = fmax(result->rms_before, 0), /* negative: no pair was found */
         .rms_after = result->rms_after,
+        .has_free = true,
+        .free = result->free_directions,
     };
 }
 

@@ -65,7 +65,7 @@ class CompareCommand(Comparing):
     def json(self, *arguments, code):
         answer = json.loads(self.compare(*arguments, "--json", code=code).stdout)
         schema.check(answer, self.schema)
-        self.assertEqual(answer["verdict"], {0: "same", 1: "differs"}.get(code, "failed"))
+        self.assertIn(answer["verdict"], {0: ("same", "within_limits"), 1: ("differs",)}.get(code, ("failed",)))
         return answer
 
     def test_exit_codes(self):
@@ -90,6 +90,13 @@ class CompareCommand(Comparing):
         near = self.compare(self.flat, self.lifted, *wide, code=0).stdout
         self.assertIn("lifted.obj: within limits\n", near)
         self.assertRegex(near, r"distance +0\.0044.* face \d+\n")
+        for new, found in ((self.flat, ("same", True, True)), (self.lifted, ("within_limits", True, False))):
+            answer = self.json(self.flat, new, *wide, code=0)
+            pair, = answer["pairs"]
+            self.assertEqual(answer["verdict"], found[0])
+            self.assertEqual((pair["verdict"], pair["within_limits"], pair["identical"]), found)
+        pair, = self.json(self.flat, self.lifted, code=1)["pairs"]
+        self.assertEqual((pair["verdict"], pair["within_limits"], pair["identical"]), ("differs", False, False))
         self.assertRegex(self.compare(self.lifted, self.flat, *wide, code=0).stdout, r"distance +-0\.0044")
 
     def test_limits(self):
@@ -156,6 +163,10 @@ class CompareCommand(Comparing):
         pair, = self.json(old, new, "--align", code=0)["pairs"]
         self.assertAlmostEqual(pair["alignment"]["shift"][2], -0.02, places=6)
         self.assertLess(pair["alignment"]["rotation_deg"], 1e-4)
+        self.assertEqual(pair["alignment"]["free_directions"], 0)
+        # A flat sheet slides in its plane and turns about its normal.
+        done = self.compare(self.flat, self.flat, "--align", code=0)
+        self.assertEqual(done.stdout.count("notice: the new surface slides along itself in 3 of 6 directions"), 1)
 
     def test_folders(self):
         strange = 'a<b>&"c"|\'\x01\x1b[31m.obj'

@@ -586,6 +586,8 @@ class Comparisons(DaemonCase):
             self.assertGreater(found.old.distance.area_out, 0)
             self.assertLessEqual({"distance", "normal_deg", "lines", "curvature"}, set(found.new.measures))
             same = session.compare(old, old, samples=20000, align=True)
+            self.assertTrue(same.identical and not found.identical)
+            self.assertEqual(same.alignment.free_directions, 3)  # those of a plane
             self.assertFalse(same.differs)
             self.assertEqual((same.worst("distance").worst, same.worst("normal_deg").worst), (0, 0))
             self.assertIsNone(same.worst("curvature"))  # nobody asked

@@ -76,12 +76,18 @@ double comparison_share_out(const struct compared_pair *pair, enum comparison_it
     return most;
 }
 
+bool comparison_is_identical(const struct compared_pair *pair)
+{
+    for (int k = 0; k < COMPARISON_ITEMS; k++)
+        if (fabs(comparison_value(pair, (enum comparison_item)k)) > 0)
+            return false;
+    return comparison_is_made(pair);
+}
+
 const char *comparison_verdict_text(const struct compared_pair *pair)
 {
-    for (int k = 0; k < COMPARISON_ITEMS && pair->verdict == COMPARISON_SAME; k++)
-        if (fabs(comparison_value(pair, (enum comparison_item)k)) > 0)
-            return "within limits";
-    return comparison_verdict_name(pair->verdict);
+    bool is_within = pair->verdict == COMPARISON_SAME && !comparison_is_identical(pair);
+    return is_within ? "within limits" : comparison_verdict_name(pair->verdict);
 }
 
 /* A limit without a share is exceeded by one place, one with a share by more area than that. */
@@ -202,6 +208,11 @@ static void print_pair(const struct compared_pair *pair)
                "square of the distance %.3g before, %.3g after\n",
                comparison->rotation_deg, comparison->shift[0], comparison->shift[1],
                comparison->shift[2], comparison->rms_before, comparison->rms_after);
+    if (comparison->free_directions > 0)
+        printf("  notice: the new surface slides along itself in %u of 6 directions, as flat and "
+               "round parts "
+               "do: no motion in them was looked for\n",
+               comparison->free_directions);
 }
 
 void comparison_print(const struct compared_pair *pairs, size_t n)

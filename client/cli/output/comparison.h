@@ -49,6 +49,8 @@ void comparison_counts(const struct compared_pair *pairs, size_t n,
                        char text[static COMPARISON_COUNTS_BYTES]);
 
 const char *comparison_verdict_name(enum comparison_verdict verdict);
+/* True if both files were compared and no measure differs from 0. */
+bool comparison_is_identical(const struct compared_pair *pair);
 /* The verdict for people: "same" only where all measures are 0, else "within limits". */
 const char *comparison_verdict_text(const struct compared_pair *pair);
 

@@ -86,12 +86,29 @@ static void write_alignment(struct json *json, const struct sheen_comparison *co
     json_double(json, "rotation_deg", comparison->rotation_deg);
     json_double(json, "rms_before", comparison->rms_before);
     json_double(json, "rms_after", comparison->rms_after);
+    json_uint(json, "free_directions", comparison->free_directions);
     json_object_end(json);
+}
+
+static const char *verdict_of(const struct compared_pair *pair)
+{
+    bool is_within = pair->verdict == COMPARISON_SAME && !comparison_is_identical(pair);
+    return is_within ? "within_limits" : comparison_verdict_name(pair->verdict);
+}
+
+static bool are_identical(const struct compared_pair *pairs, size_t n)
+{
+    size_t n_identical = 0;
+    for (size_t i = 0; i < n; i++)
+        n_identical += comparison_is_identical(&pairs[i]);
+    return n_identical == n;
 }
 
 static void write_comparison(struct json *json, const struct compared_pair *pair)
 {
     const struct sheen_comparison *comparison = &pair->comparison;
+    json_bool(json, "within_limits", pair->verdict == COMPARISON_SAME);
+    json_bool(json, "identical", comparison_is_identical(pair));
     json_string(json, "unit", pair->has_unit ? "m" : "the file's own");
     json_double(json, "diagonal", comparison->diagonal);
     json_object_begin(json, "floor");
@@ -125,9 +142,10 @@ static void write_failure(struct json *json, const struct compared_pair *pair)
 
 void comparison_write_json(struct json *json, const struct compared_pair *pairs, size_t n)
 {
-    const char *verdict = comparison_count(pairs, n, COMPARISON_FAILED)      ? "failed"
-                          : comparison_count(pairs, n, COMPARISON_SAME) == n ? "same"
-                                                                             : "differs";
+    const char *verdict = comparison_count(pairs, n, COMPARISON_FAILED)     ? "failed"
+                          : comparison_count(pairs, n, COMPARISON_SAME) < n ? "differs"
+                          : are_identical(pairs, n)                         ? "same"
+                                                                            : "within_limits";
     json_object_begin(json, NULL);
     json_string(json, "schema", SCHEMA);
     json_string(json, "verdict", verdict);
@@ -135,7 +153,7 @@ void comparison_write_json(struct json *json, const struct compared_pair *pairs,
     for (size_t i = 0; i < n; i++) {
         json_object_begin(json, NULL);
         json_string(json, "name", pairs[i].name);
-        json_string(json, "verdict", comparison_verdict_name(pairs[i].verdict));
+        json_string(json, "verdict", verdict_of(&pairs[i]));
         write_file(json, "old", &pairs[i], 0);
         write_file(json, "new", &pairs[i], 1);
         if (pairs[i].verdict == COMPARISON_FAILED)

@@ -59,6 +59,7 @@ static void fill_alignment(struct sheen_comparison *to, const sheen_Alignment *f
     to->rotation_deg = from->rotation_deg;
     to->rms_before = from->rms_before;
     to->rms_after = from->rms_after;
+    to->free_directions = from->free;
 }
 
 static void fill(struct sheen_comparison *to, const sheen_Compared *from)

@@ -67,6 +67,9 @@ struct sheen_comparison {
     struct sheen_compared_side sides[2]; /* the old surface's samples, and the new one's */
     bool is_rewound; /* the new surface as a whole is wound the other way around */
     bool is_aligned;
+    /* With is_aligned: in how many independent directions (of 6, shifts and rotations) the new surface
+     * slides along itself, as a plane does in 3: they were left as they are. */
+    uint32_t free_directions;
     double diagonal; /* of the old model's box */
     /* What equal surfaces of different files differ by: tables are in single precision. */
     double distance_floor, normal_floor_deg;

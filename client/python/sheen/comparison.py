@@ -131,12 +131,13 @@ class Alignment:
     rotation_deg: float
     rms_before: float  # of the distances
     rms_after: float
+    free_directions: int  # of 6, in which the surface slides along itself: no motion in them was looked for
 
     @staticmethod
     def of(body: messages.Alignment) -> Alignment:
         rows = [tuple_of(row) for row in (body.x, body.y, body.z)]
         return Alignment(np.array(rows), np.array(tuple_of(body.shift)), body.rotation_deg, body.rms_before,
-                         body.rms_after)
+                         body.rms_after, body.free or 0)
 
 
 @dataclass(frozen=True)
@@ -166,6 +167,11 @@ class Comparison:
     def differs(self) -> bool:
         """True if a measure is out; the verdict of `sheen compare`."""
         return bool(self.out)
+
+    @property
+    def identical(self) -> bool:
+        """True if no measure that was compared differs from 0."""
+        return not any(self.value(name) for name in Limits.__annotations__)
 
     def value(self, name: str) -> float | None:
         """The value of a measure that is judged, over both sides; None: it has none."""

@@ -3,6 +3,10 @@
 #include <math.h>
 #include <stdlib.h>
 
+/* A motion of unit size (of the model's size, or 1 rad about its middle) that moves the points along their normals by less
+ * than the root of this, as a mean square, slides the surface along itself. */
+static const double LEAST_HOLD = 1e-6;
+
 bool alignment_init(struct alignment *alignment, double size, struct error *error)
 {
     *alignment = (struct alignment){.size = size, .rms_before = -1};
@@ -99,6 +103,42 @@ static bool solve(double a[6][6], double b[6])
     return true;
 }
 
+/* One rotation of Jacobi's method, which makes a[p][q] zero. */
+static void rotate(double a[6][6], int p, int q)
+{
+    double half = 0.5 * (a[q][q] - a[p][p]) / a[p][q];
+    double t = (half < 0 ? -1 : 1) / (fabs(half) + sqrt(half * half + 1));
+    double c = 1 / sqrt(t * t + 1), s = t * c;
+    for (int k = 0; k < 6; k++) {
+        double x = a[k][p], y = a[k][q];
+        a[k][p] = c * x - s * y;
+        a[k][q] = s * x + c * y;
+    }
+    for (int k = 0; k < 6; k++) {
+        double x = a[p][k], y = a[q][k];
+        a[p][k] = c * x - s * y;
+        a[q][k] = s * x + c * y;
+    }
+}
+
+/* The number of eigenvalues below a limit, of a symmetric matrix whose lower triangle is given: Jacobi's method. */
+static unsigned count_below(const double lower[6][6], double limit)
+{
+    double a[6][6];
+    for (int i = 0; i < 6; i++)
+        for (int k = 0; k < 6; k++)
+            a[i][k] = i >= k ? lower[i][k] : lower[k][i];
+    for (int sweep = 0; sweep < 12; sweep++)
+        for (int p = 0; p < 5; p++)
+            for (int q = p + 1; q < 6; q++)
+                if (fabs(a[p][q]) > 1e-3 * limit)
+                    rotate(a, p, q);
+    unsigned n = 0;
+    for (int k = 0; k < 6; k++)
+        n += a[k][k] < limit;
+    return n;
+}
+
 /* The rotation by the vector w (its length is the angle) by Rodrigues' formula. */
 static struct rigid_motion rotation_by(struct vec w)
 {
@@ -168,6 +208,7 @@ void alignment_solve(struct alignment *alignment)
         if (pair->is_known && fabs(pair->distance) <= most)
             add_pair(pair, centre, alignment->size, a, b);
     }
+    alignment->free_directions = count_below(a, LEAST_HOLD * n);
     /* Where the surface slides along itself, the matrix is singular: this share keeps such motions at 0. */
     for (int k = 0; k < 6; k++)
         a[k][k] += 1e-9 * n;

@@ -1,7 +1,7 @@
 /* Moves a surface onto another one by a rigid motion: iterated closest points, from point to plane (Chen and Medioni
  * 1992), trimmed. Each round pairs samples of the moved surface with their counterparts, leaves out the tenth with the
  * largest distances, and solves for the motion to which first order makes the sum of squared distances along the
- * normals least. Directions in which the surface can slide along itself are not moved in. */
+ * normals least. Directions in which the surface can slide along itself are not moved in, and are counted. */
 #ifndef SHEEN_CURVES_COMPARE_ALIGN_H
 #define SHEEN_CURVES_COMPARE_ALIGN_H
 
@@ -23,6 +23,8 @@ struct alignment {
     double rms_before,
         rms_after; /* over the pairs that were used in the first and the last round */
     double size;   /* of the fixed surface */
+    unsigned
+        free_directions; /* in which the moved surface slides along itself, in the last round */
     bool is_done;
 };
 

@@ -68,9 +68,10 @@ struct comparison_result {
      * when their files differ. */
     double distance_floor, normal_floor_deg;
     /* With is_aligned: the motion of the new surface; the angle of its rotation, degrees; the root mean square of the
-     * distances before and after it. */
+     * distances before and after it; the number of directions in which the new surface slides along itself. */
     struct rigid_motion motion;
     double rotation_deg, rms_before, rms_after;
+    unsigned free_directions;
 };
 
 /* An upper bound of the memory that a comparison of these surfaces by n_samples needs; more pieces of a surface than

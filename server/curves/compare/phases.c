@@ -189,6 +189,7 @@ static bool begin_refill(struct comparison *comparison, size_t *n_slices, struct
     comparison->result.rotation_deg = motion_angle_deg(&comparison->alignment.motion);
     comparison->result.rms_before = comparison->alignment.rms_before;
     comparison->result.rms_after = comparison->alignment.rms_after;
+    comparison->result.free_directions = comparison->alignment.free_directions;
     *n_slices = leaf_slices(&comparison->part[COMPARISON_NEW]);
     return true;
 }
