@@ -282,6 +282,18 @@ static void test_passed_over(void **state)
              "int[] faceVertexIndices = [0,1,4,3, 1,2,5,4]\n}\n",
          "part.usda:3: properties vary over time, and the earliest time is shown: "
          "'faceVertexCounts'"},
+        /* The place of a mesh varies if an op of a parent does, unless a reset drops it. */
+        {USD "def Xform \"a\" {\ndouble xformOp:rotateX.timeSamples = { 1: 360 }\n"
+             "uniform token[] xformOpOrder = [\"xformOp:rotateX\"]\n" USD_MESH(USD_PAIR) "}\n",
+         "part.usda:3: properties vary over time, and the earliest time is shown: "
+         "'xformOp:rotateX'"},
+        {USD "def Xform \"a\" {\ndouble xformOp:rotateX.timeSamples = { 1: 30 }\n"
+             "uniform token[] xformOpOrder = [\"xformOp:rotateX\"]\n"
+             "def Mesh \"x\" {}\n" USD_MESH(
+                 USD_PAIR "uniform token[] xformOpOrder = [\"!resetXformStack!\"]\n") "}\n",
+         "part.usda:3: properties vary over time, and the earliest time is shown: "
+         "'xformOp:rotateX'\n"
+         "part.usda:5: meshes without points or faces are passed over: 'x'"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct cage cage;

@@ -8,6 +8,8 @@ enum purpose { PURPOSE_DEFAULT, PURPOSE_RENDER, PURPOSE_PROXY, PURPOSE_GUIDE };
 struct state {
     struct transform world;
     bool is_placed; /* false: `world` is the identity, and was never multiplied */
+    /* The innermost op of `world` that varies over time; NULL: none does. */
+    const struct usd_property *varying_op;
     bool hidden;
     enum purpose purpose;
 };
@@ -106,6 +108,14 @@ static bool check_arc(const struct stage *stage, const struct usd_prim *prim)
                     prim->arc.is_instance ? ", after instanceable = true was removed" : "");
 }
 
+static const struct usd_property *find_varying_op(const struct usd_values *values)
+{
+    for (size_t i = 0; i < values->n_ops; i++)
+        if (values->op[i]->source == USD_SAMPLE)
+            return values->op[i];
+    return NULL;
+}
+
 static bool place(struct stage *stage, struct state *state, const struct usd_values *values)
 {
     struct usd_xform xform;
@@ -119,6 +129,9 @@ static bool place(struct stage *stage, struct state *state, const struct usd_val
         return false;
     if (xform.unknown.length > 0)
         tally(&stage->unknown_ops, &xform.unknown);
+    const struct usd_property *varying_op = find_varying_op(values);
+    if (varying_op || xform.resets)
+        state->varying_op = varying_op;
     if (xform.resets) {
         state->world = xform.matrix;
         state->is_placed = !xform.is_identity;
@@ -198,14 +211,15 @@ static bool has_faces(const struct usd_values *values)
            values->property[USD_FACE_VERTEX_INDICES];
 }
 
-static void tally_samples(struct stage *stage, const struct usd_values *values)
+/* Counts the properties of a mesh that vary over time, and one for its place. */
+static void tally_samples(struct stage *stage, const struct usd_values *values,
+                          const struct state *state)
 {
     for (size_t k = 0; k < N_USD_PROPERTIES; k++)
         if (values->property[k] && values->property[k]->source == USD_SAMPLE)
             tally(&stage->sampled, &values->property[k]->name);
-    for (size_t i = 0; i < values->n_ops; i++)
-        if (values->op[i]->source == USD_SAMPLE)
-            tally(&stage->sampled, &values->op[i]->name);
+    if (state->varying_op)
+        tally(&stage->sampled, &state->varying_op->name);
 }
 
 /* Looks at a mesh before any is added: what all must share. */
@@ -261,7 +275,7 @@ static bool visit_drawn(struct stage *stage, const struct usd_values *values,
         tally(&stage->other, &prim->name);
     if (!is_type(prim, "Mesh"))
         return true;
-    tally_samples(stage, values);
+    tally_samples(stage, values, state);
     if (has_faces(values))
         return visit(stage, values, state);
     tally(&stage->empty, &prim->name);
