@@ -7,6 +7,8 @@ import unittest
 
 from daemon import MODELS, SHEEN, Daemon
 from png import read_png
+from sheen.errors import BadArgument
+from sheen.files import weld
 from test_client import sheen
 
 REFUSED = {
@@ -83,6 +85,8 @@ class Usd(unittest.TestCase):
     def test_weld_is_for_obj(self):
         model = os.path.join(MODELS, "creases.usda")
         self.assertIn("--weld is for OBJ", self.run_sheen("info", model, "--weld", code=2).stderr)
+        for name, data in (("a.usda", b""), ("a", b"#usda 1.0\n"), ("a", b"PXR-USDC")):
+            self.assertRaisesRegex(BadArgument, "weld is for OBJ", weld, name, data)
 
 
 if __name__ == "__main__":

@@ -287,12 +287,8 @@ static bool visit_prim(struct stage *stage, const struct usd_prim *prim, visit_m
     struct usd_values values;
     struct state *state = &stage->state[prim->depth + 1];
     *state = stage->state[prim->depth];
-    if (state->hidden) {
-        if (is_type(prim, "Mesh"))
-            tally(&stage->hidden, &prim->name);
-        return true;
-    }
-    if (!usd_find_values(&values, stage->layer, prim) || !read_visibility(state, &values))
+    if (!state->hidden &&
+        (!usd_find_values(&values, stage->layer, prim) || !read_visibility(state, &values)))
         return false;
     if (state->hidden) {
         if (is_type(prim, "Mesh"))
