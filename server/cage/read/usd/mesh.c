@@ -3,32 +3,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-bool usd_read_settings(struct usd_settings *settings, const struct usd_values *values,
-                       const struct usd_file *file)
-{
-    static const char *const schemes[] = {"catmullClark", "loop", "bilinear", "none"};
-    static const char *const boundaries[] = {"edgeOnly", "edgeAndCorner", "none"};
-    static const char *const rules[] = {"catmullClark", "smooth"};
-    static const char *const orientations[] = {"rightHanded", "leftHanded"};
-    size_t scheme = 0, boundary = 1, rule = 0, orientation = 0;
-    if (!usd_choose(values, USD_SUBDIVISION_SCHEME, schemes, 4,
-                    "catmullClark, loop, bilinear, none", &scheme) ||
-        !usd_choose(values, USD_INTERPOLATE_BOUNDARY, boundaries, 3,
-                    "none, edgeOnly, edgeAndCorner", &boundary) ||
-        !usd_choose(values, USD_TRIANGLE_RULE, rules, 2, "catmullClark, smooth", &rule) ||
-        !usd_choose(values, USD_ORIENTATION, orientations, 2, "rightHanded, leftHanded",
-                    &orientation))
-        return false;
-    if (scheme == 3)
-        return usd_fail(file, values->property[USD_SUBDIVISION_SCHEME]->name.line,
-                        "Mesh '%.*s' has subdivisionScheme none: it is a polygon mesh and no cage; "
-                        "export it with its subdivision scheme, or hide it",
-                        USD_SHOWN(&values->prim->name));
-    *settings = (struct usd_settings){(enum cage_scheme)scheme, (enum cage_boundary)boundary,
-                                      rule == 1, orientation == 1};
-    return true;
-}
-
 /* --- points */
 
 static bool check_point(const struct usd_mesh *mesh, const double point[3], uint32_t line)

@@ -5,19 +5,6 @@
 #include "server/cage/build/builder.h"
 #include "server/cage/read/usd/xform.h"
 
-/* The settings of a mesh that a cage has only once, or that decide whether it is drawn. */
-struct usd_settings {
-    enum cage_scheme scheme;
-    enum cage_boundary boundary;
-    bool smooth_triangles;
-    bool left_handed; /* faces are clockwise seen from outside */
-};
-
-/* Reads the settings, with USD's own values for those that the mesh does not have. False with
- * ERROR_MODEL, also for the scheme "none". */
-bool usd_read_settings(struct usd_settings *settings, const struct usd_values *values,
-                       const struct usd_file *file);
-
 /* One mesh that has points and faces. */
 struct usd_mesh {
     const struct usd_values *values;

@@ -1,6 +1,7 @@
 #include "server/cage/read/usd/stage.h"
 
 #include "server/cage/read/usd/mesh.h"
+#include "server/cage/read/usd/settings.h"
 
 enum purpose { PURPOSE_DEFAULT, PURPOSE_RENDER, PURPOSE_PROXY, PURPOSE_GUIDE };
 
@@ -20,12 +21,6 @@ struct tally {
     struct usd_token first;
 };
 
-/* A setting that all meshes must share, and the mesh that gave it. */
-struct shared {
-    bool said;
-    uint32_t line;
-};
-
 struct stage {
     struct cage_builder *builder;
     const struct usd_layer *layer;
@@ -33,8 +28,7 @@ struct stage {
     /* The open prims; state[0] is around them all. */
     struct state state[USD_MAX_DEPTH + 1];
     struct tally hidden, purposes, other, empty, sampled, skins, unplaced, unknown_ops;
-    struct shared scheme, boundary, catmull_clark_triangles, smooth_triangles;
-    bool mixed_boundaries; /* meshes differ in edgeOnly and edgeAndCorner */
+    struct usd_shared shared;
     bool has_negative;
 };
 
@@ -143,66 +137,6 @@ static bool place(struct stage *stage, struct state *state, const struct usd_val
     return true;
 }
 
-/* --- settings that a cage has once */
-
-static bool differ(const struct stage *stage, const char *what, const struct usd_prim *prim,
-                   uint32_t line)
-{
-    return usd_fail(stage->file, prim->name.line,
-                    "%s of Mesh '%.*s' differs from that of the mesh in line %u, and a model has "
-                    "one: write a file for each",
-                    what, USD_SHOWN(&prim->name), line);
-}
-
-static bool settle_scheme(struct stage *stage, const struct usd_prim *prim,
-                          const struct usd_settings *settings)
-{
-    struct cage *cage = &stage->builder->cage;
-    if (stage->scheme.said && cage->scheme != settings->scheme)
-        return differ(stage, "subdivisionScheme", prim, stage->scheme.line);
-    stage->scheme = (struct shared){true, prim->name.line};
-    cage->scheme = settings->scheme;
-    return true;
-}
-
-/* Meshes of edgeOnly and of edgeAndCorner can be in one cage: it has edgeOnly, and the corners of
- * the latter get tags. */
-static bool settle_boundary(struct stage *stage, const struct usd_prim *prim,
-                            const struct usd_settings *settings)
-{
-    struct cage *cage = &stage->builder->cage;
-    if (!stage->boundary.said) {
-        stage->boundary = (struct shared){true, prim->name.line};
-        cage->boundary = settings->boundary;
-        return true;
-    }
-    if ((settings->boundary == CAGE_BOUNDARY_NONE) != (cage->boundary == CAGE_BOUNDARY_NONE))
-        return differ(stage, "interpolateBoundary", prim, stage->boundary.line);
-    if (settings->boundary != cage->boundary) {
-        stage->mixed_boundaries = true;
-        cage->boundary = CAGE_BOUNDARY_EDGE_ONLY;
-    }
-    return true;
-}
-
-/* The rule of triangles matters only to meshes that have triangles. */
-static bool settle_triangles(struct stage *stage, const struct usd_prim *prim, bool smooth,
-                             bool has_triangle)
-{
-    struct cage *cage = &stage->builder->cage;
-    struct shared *own = smooth ? &stage->smooth_triangles : &stage->catmull_clark_triangles;
-    const struct shared *other =
-        smooth ? &stage->catmull_clark_triangles : &stage->smooth_triangles;
-    if (has_triangle && other->said)
-        return differ(stage, "triangleSubdivisionRule", prim, other->line);
-    if (has_triangle && !own->said)
-        *own = (struct shared){true, prim->name.line};
-    cage->smooth_triangles =
-        stage->smooth_triangles.said ||
-        (!stage->catmull_clark_triangles.said && (cage->smooth_triangles || smooth));
-    return true;
-}
-
 /* --- the walk */
 
 static bool has_faces(const struct usd_values *values)
@@ -229,8 +163,7 @@ static bool survey_mesh(struct stage *stage, const struct usd_values *values,
     (void)state;
     struct usd_settings settings;
     return usd_read_settings(&settings, values, stage->file) &&
-           settle_scheme(stage, values->prim, &settings) &&
-           settle_boundary(stage, values->prim, &settings);
+           usd_share_settings(&stage->shared, values->prim, &settings);
 }
 
 static bool build_mesh(struct stage *stage, const struct usd_values *values,
@@ -248,11 +181,12 @@ static bool build_mesh(struct stage *stage, const struct usd_values *values,
         .is_placed = state->is_placed,
         .turn_faces = settings.left_handed != mirrored,
         .sharp_corners =
-            stage->mixed_boundaries && settings.boundary == CAGE_BOUNDARY_EDGE_AND_CORNER,
+            stage->shared.mixed_boundaries && settings.boundary == CAGE_BOUNDARY_EDGE_AND_CORNER,
         .has_negative = &stage->has_negative,
     };
     return usd_add_mesh(&mesh) &&
-           settle_triangles(stage, values->prim, settings.smooth_triangles, mesh.has_triangle);
+           usd_share_triangle_rule(&stage->shared, values->prim, settings.smooth_triangles,
+                                   mesh.has_triangle);
 }
 
 typedef bool visit_mesh(struct stage *, const struct usd_values *, const struct state *);
@@ -373,7 +307,10 @@ static bool check_faces(const struct stage *stage)
 
 bool usd_stage_build(struct cage_builder *builder, const struct usd_layer *layer)
 {
-    struct stage stage = {.builder = builder, .layer = layer, .file = layer->file};
+    struct stage stage = {.builder = builder,
+                          .layer = layer,
+                          .file = layer->file,
+                          .shared = {.cage = &builder->cage, .file = layer->file}};
     builder->cage.up = layer->up;
     if (!walk(&stage, survey_mesh))
         return false;
