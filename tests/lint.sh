@@ -73,7 +73,7 @@ room server/image "$common|protocol" 'pictures are data'
 room server/sandbox "$common|server/cage|server/cage/read|server/image" 'the worker programs see files alone'
 room server/scene "$common|protocol|protocol/messages|server/cage|server/surface" 'a request is data'
 room server/curves "$common|server/scene|server/surface" 'numbers on surfaces: no cage, no device, no client'
-room server/curves/fields "$common|server/curves|server/scene|server/surface" 'lines as polynomials'
+room server/curves/fields "$common|server/curves|server/scene|server/surface" 'lines as zero sets of functions'
 for kind in breaks compare lines; do
     room server/curves/$kind "$common|protocol|server/curves|server/curves/fields|server/scene|server/surface" 'no computation knows another'
 done

@@ -177,6 +177,7 @@ oracle() {
     beside deep "$build/tests/test_deep"
     beside sectors "$build/tests/test_sectors"
     beside line_position "$build/tests/test_line_position"
+    beside line_ends "$build/tests/test_line_ends"
     # shellcheck disable=SC2046 # a list of files without spaces
     beside comparison "$build/tests/test_comparison" $(shapes_of 'catmark_car.obj')
     beside breaks "$build/tests/test_breaks"

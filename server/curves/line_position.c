@@ -154,19 +154,25 @@ static struct line_position meet_infinity(const struct line_map *map, struct vec
     return at;
 }
 
-struct line_position line_position_at(const struct line_map *map, struct vec x, struct vec n)
+struct vec line_ray(const struct line_map *map, struct vec x, struct vec n)
 {
     struct vec v = sight(map, x, n);
+    double towards = vec_dot(v, n);
+    if (map->family == LINES_HIGHLIGHT) /* of the two directions, the one that faces the eye */
+        return towards >= LEAST_SINE ? vec_scale(n, -1) : n;
+    return vec_mad(v, -2 * towards, n);
+}
+
+struct line_position line_position_at(const struct line_map *map, struct vec x, struct vec n)
+{
     if (map->family == LINES_ISOPHOTE) {
+        struct vec v = sight(map, x, n);
         struct vec d = map->has_direction ? map->direction : vec_scale(v, -1);
         double angle = atan2(vec_length(vec_cross(n, d)), vec_dot(n, d));
         return (struct line_position){
             .met = true, .known = true, .s = angle / M_PI, .t = 0.5, .sine = 1};
     }
-    double towards = vec_dot(v, n);
-    struct vec r = vec_mad(v, -2 * towards, n);
-    if (map->family == LINES_HIGHLIGHT) /* of the two directions, the one that faces the eye */
-        r = towards >= LEAST_SINE ? vec_scale(n, -1) : n;
+    struct vec r = line_ray(map, x, n);
     if (map->family == LINES_ZEBRA || map->family == LINES_ENVIRONMENT || map->kind == LIGHT_SPHERE)
         return meet_infinity(map, r);
     return map->kind == LIGHT_TUNNEL ? meet_tunnel(map, x, r) : meet_plane(map, x, r);

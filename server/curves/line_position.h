@@ -42,6 +42,10 @@ struct line_position {
  * family needs one; u and v of the light are not parallel (request_check()). */
 void line_map_init(struct line_map *map, const struct lines *lines, const struct light *light);
 
+/* The unit direction in which the ray of the point x with the unit normal n runs to the light. Not for isophotes, which have no
+ * rays. */
+struct vec line_ray(const struct line_map *map, struct vec x, struct vec n);
+
 /* The place of the point x with the unit normal n. */
 struct line_position line_position_at(const struct line_map *map, struct vec x, struct vec n);
 

@@ -1,158 +1,68 @@
 #include "server/curves/fields/field.h"
 
 #include <math.h>
-
-/* The same formula is computed with four kinds of numbers: with nets; with jets, which are a value and its derivatives by u
- * and v; with intervals, which are a middle and a radius; and with bounds of absolute values. Each is a struct net: a jet has
- * degrees 0 and 2, an interval 0 and 1, a bound 0 and 0, and these use c alone. */
-struct numbers {
-    struct net (*product)(struct net_room *room, const struct net *a, const struct net *b);
-    struct net (*sum)(struct net_room *room, double x, const struct net *a, double y,
-                      const struct net *b);
-    struct net (*constant)(struct net_room *room, double value);
-};
-
-static struct net net_constant(struct net_room *room, double value)
-{
-    struct net out = net_take(room, 0, 0);
-    out.c[0] = value;
-    return out;
-}
-
-static struct net jet_product(struct net_room *room, const struct net *a, const struct net *b)
-{
-    struct net out = net_take(room, 0, 2);
-    out.c[0] = a->c[0] * b->c[0];
-    out.c[1] = a->c[1] * b->c[0] + a->c[0] * b->c[1];
-    out.c[2] = a->c[2] * b->c[0] + a->c[0] * b->c[2];
-    return out;
-}
-
-static struct net jet_sum(struct net_room *room, double x, const struct net *a, double y,
-                          const struct net *b)
-{
-    struct net out = net_take(room, 0, 2);
-    for (int k = 0; k < 3; k++)
-        out.c[k] = x * a->c[k] + y * b->c[k];
-    return out;
-}
-
-static struct net jet_constant(struct net_room *room, double value)
-{
-    struct net out = net_take(room, 0, 2);
-    out.c[0] = value;
-    out.c[1] = out.c[2] = 0;
-    return out;
-}
-
-static struct net bound_product(struct net_room *room, const struct net *a, const struct net *b)
-{
-    return net_constant(room, a->c[0] * b->c[0]);
-}
-
-static struct net bound_sum(struct net_room *room, double x, const struct net *a, double y,
-                            const struct net *b)
-{
-    return net_constant(room, fabs(x) * a->c[0] + fabs(y) * b->c[0]);
-}
-
-static struct net bound_constant(struct net_room *room, double value)
-{
-    return net_constant(room, fabs(value));
-}
-
-static struct net interval_product(struct net_room *room, const struct net *a, const struct net *b)
-{
-    struct net out = net_take(room, 0, 1);
-    double x = a->c[0], y = b->c[0];
-    out.c[0] = x * y;
-    out.c[1] = fabs(x) * b->c[1] + fabs(y) * a->c[1] + a->c[1] * b->c[1];
-    return out;
-}
-
-static struct net interval_sum(struct net_room *room, double x, const struct net *a, double y,
-                               const struct net *b)
-{
-    struct net out = net_take(room, 0, 1);
-    out.c[0] = x * a->c[0] + y * b->c[0];
-    out.c[1] = fabs(x) * a->c[1] + fabs(y) * b->c[1];
-    return out;
-}
-
-static struct net interval_constant(struct net_room *room, double value)
-{
-    struct net out = net_take(room, 0, 1);
-    out.c[0] = value;
-    out.c[1] = 0;
-    return out;
-}
-
-static const struct numbers NETS = {net_product, net_sum, net_constant};
-static const struct numbers JETS = {jet_product, jet_sum, jet_constant};
-static const struct numbers INTERVALS = {interval_product, interval_sum, interval_constant};
-static const struct numbers BOUNDS = {bound_product, bound_sum, bound_constant};
+#include <string.h>
 
 /* What the formulas start from. */
 struct terms {
     const struct numbers *numbers;
-    struct net_room *room;
+    struct number_room *room;
     const struct line_field *field;
-    struct net l[3];   /* the place relative to the light's centre */
-    struct net v[3];   /* the view */
-    struct net n[3];   /* the normal */
-    struct net nn, vn; /* N.N, V.N; not set where R is N */
-    bool along_normal; /* R is N */
+    const double *l[3];    /* the place relative to the light's centre */
+    const double *v[3];    /* the view */
+    const double *n[3];    /* the normal */
+    const double *nn, *vn; /* N.N, V.N; not set where R is N */
+    bool along_normal;     /* R is N */
 };
 
-static struct net product(const struct terms *t, struct net a, struct net b)
+static const double *product(const struct terms *t, const double *a, const double *b)
 {
-    /* cppcheck-suppress returnDanglingLifetime ; the result points to the room */
-    return t->numbers->product(t->room, &a, &b);
+    return t->numbers->product(t->room, a, b);
 }
 
-static struct net sum(const struct terms *t, double x, struct net a, double y, struct net b)
+static const double *sum(const struct terms *t, double x, const double *a, double y,
+                         const double *b)
 {
-    /* cppcheck-suppress returnDanglingLifetime ; the result points to the room */
-    return t->numbers->sum(t->room, x, &a, y, &b);
+    return t->numbers->sum(t->room, x, a, y, b);
 }
 
-static struct net dot(const struct terms *t, const struct net a[3], const struct net b[3])
+static const double *dot(const struct terms *t, const double *const a[3], const double *const b[3])
 {
-    struct net xy = sum(t, 1, product(t, a[0], b[0]), 1, product(t, a[1], b[1]));
+    const double *xy = sum(t, 1, product(t, a[0], b[0]), 1, product(t, a[1], b[1]));
     return sum(t, 1, xy, 1, product(t, a[2], b[2]));
 }
 
-static struct net along(const struct terms *t, const struct net a[3], struct vec e)
+static const double *along(const struct terms *t, const double *const a[3], struct vec e)
 {
-    return sum(t, 1, sum(t, e.x, a[0], e.y, a[1]), e.z, a[2]);
+    const double by[3] = {e.x, e.y, e.z};
+    return t->numbers->along(t->room, by, a);
 }
 
 /* The part of R along e. */
-static struct net ray_along(const struct terms *t, struct vec e)
+static const double *ray_along(const struct terms *t, struct vec e)
 {
-    struct net n = along(t, t->n, e);
+    const double *n = along(t, t->n, e);
     if (t->along_normal)
         return n;
     return sum(t, 1, product(t, t->nn, along(t, t->v, e)), -2, product(t, t->vn, n));
 }
 
-static void relative_to(const struct numbers *numbers, struct net_room *room, const struct net s[3],
-                        struct vec from, struct net out[3])
+static void relative_to(const struct terms *t, const double *const s[3], struct vec from,
+                        const double *out[3])
 {
     const double at[3] = {from.x, from.y, from.z};
-    for (int d = 0; d < 3; d++) {
-        struct net c = numbers->constant(room, at[d]);
-        out[d] = numbers->sum(room, 1, &s[d], -1, &c);
-    }
+    for (int d = 0; d < 3; d++)
+        out[d] = t->numbers->shifted(t->room, s[d], -at[d]);
 }
 
-static void start(struct terms *t, struct vec origin, const struct net s[3], const struct net n[3])
+static void start(struct terms *t, struct vec origin, const double *const s[3],
+                  const double *const n[3])
 {
     const struct line_map *map = &t->field->map;
-    relative_to(t->numbers, t->room, s, vec_sub(map->centre, origin), t->l);
+    relative_to(t, s, vec_sub(map->centre, origin), t->l);
     const double view[3] = {map->eye.x, map->eye.y, map->eye.z};
     if (map->eye_is_point)
-        relative_to(t->numbers, t->room, s, vec_sub(map->eye, origin), t->v);
+        relative_to(t, s, vec_sub(map->eye, origin), t->v);
     for (int d = 0; d < 3; d++) {
         if (!map->eye_is_point)
             t->v[d] = t->numbers->constant(t->room, view[d]);
@@ -165,64 +75,70 @@ static void start(struct terms *t, struct vec origin, const struct net s[3], con
     }
 }
 
-static int plane_terms(const struct terms *t, struct net g[FIELD_TERMS])
+static int plane_terms(const struct terms *t, const double *g[FIELD_TERMS])
 {
     struct vec e = t->field->across, m = t->field->map.axis;
-    struct net mr = ray_along(t, m), er = ray_along(t, e);
+    const double *mr = ray_along(t, m), *er = ray_along(t, e);
     g[0] = sum(t, 1, product(t, along(t, t->l, e), mr), -1, product(t, along(t, t->l, m), er));
     g[1] = mr;
     return 2;
 }
 
-static int around_terms(const struct terms *t, struct net g[FIELD_TERMS])
+static int around_terms(const struct terms *t, const double *g[FIELD_TERMS])
 {
     struct vec e1 = t->field->map.zero, e2 = t->field->map.next;
-    struct net x = along(t, t->l, e1), y = along(t, t->l, e2);
+    const double *x = along(t, t->l, e1), *y = along(t, t->l, e2);
     g[1] = ray_along(t, e2);
     g[2] = ray_along(t, e1);
     g[0] = sum(t, -1, product(t, x, g[1]), 1, product(t, y, g[2]));
     return 3;
 }
 
-static int along_terms(const struct terms *t, struct net g[FIELD_TERMS])
+static int along_terms(const struct terms *t, const double *g[FIELD_TERMS])
 {
     const struct line_map *map = &t->field->map;
-    struct net q[2] = {ray_along(t, map->zero), ray_along(t, map->next)};
-    struct net x[2] = {along(t, t->l, map->zero), along(t, t->l, map->next)};
-    struct net a = ray_along(t, map->axis), z = along(t, t->l, map->axis), w[2];
+    const double *q[2] = {ray_along(t, map->zero), ray_along(t, map->next)};
+    const double *x[2] = {along(t, t->l, map->zero), along(t, t->l, map->next)};
+    const double *a = ray_along(t, map->axis), *z = along(t, t->l, map->axis), *w[2];
     for (int k = 0; k < 2; k++)
         w[k] = sum(t, 1, product(t, a, x[k]), -1, product(t, z, q[k]));
-    struct net ww = sum(t, 1, product(t, w[0], w[0]), 1, product(t, w[1], w[1]));
-    struct net wq = sum(t, 1, product(t, w[0], q[0]), 1, product(t, w[1], q[1]));
+    const double *ww = sum(t, 1, product(t, w[0], w[0]), 1, product(t, w[1], w[1]));
+    const double *wq = sum(t, 1, product(t, w[0], q[0]), 1, product(t, w[1], q[1]));
     g[0] = sum(t, 1, ww, -map->radius * map->radius, product(t, a, a));
     g[1] = sum(t, 2, wq, 0, wq);
     g[2] = sum(t, 1, product(t, q[0], q[0]), 1, product(t, q[1], q[1]));
     return 3;
 }
 
-static int elevation_terms(const struct terms *t, struct net g[FIELD_TERMS])
+static const double *root(const struct terms *t, const double *a)
 {
-    struct net a = ray_along(t, t->field->map.axis);
-    g[0] = product(t, a, a);
+    return t->numbers->root(t->room, a);
+}
+
+static int elevation_terms(const struct terms *t, const double *g[FIELD_TERMS])
+{
+    g[0] = ray_along(t, t->field->map.axis);
     if (t->along_normal)
-        g[1] = dot(t, t->n, t->n);
+        g[1] = root(t, dot(t, t->n, t->n));
     else
-        g[1] = product(t, product(t, t->nn, t->nn), dot(t, t->v, t->v)); /* |R| = |N|^2 |V| */
+        g[1] = product(t, t->nn, root(t, dot(t, t->v, t->v)));
     return 2;
 }
 
-static int isophote_terms(const struct terms *t, struct net g[FIELD_TERMS])
+static int isophote_terms(const struct terms *t, const double *g[FIELD_TERMS])
 {
-    bool has_direction = t->field->map.has_direction, is_90 = t->field->form == FIELD_ISOPHOTE_90;
-    struct net towards = has_direction ? along(t, t->n, t->field->map.direction) : t->vn;
-    g[0] = is_90 ? towards : product(t, towards, towards);
-    if (is_90)
-        return 1;
-    g[1] = has_direction ? t->nn : product(t, t->nn, dot(t, t->v, t->v));
+    const double *length = root(t, t->nn);
+    if (t->field->map.has_direction) {
+        g[0] = along(t, t->n, t->field->map.direction);
+        g[1] = length;
+    } else { /* towards the eye */
+        g[0] = sum(t, -1, t->vn, 0, t->vn);
+        g[1] = product(t, length, root(t, dot(t, t->v, t->v)));
+    }
     return 2;
 }
 
-static int terms_of(const struct terms *t, struct net g[FIELD_TERMS])
+static int terms_of(const struct terms *t, const double *g[FIELD_TERMS])
 {
     switch (t->field->form) {
     case FIELD_PLANE:
@@ -237,11 +153,7 @@ static int terms_of(const struct terms *t, struct net g[FIELD_TERMS])
         return 2;
     case FIELD_ELEVATION:
         return elevation_terms(t, g);
-    case FIELD_LEVEL:
-        g[0] = ray_along(t, t->field->map.axis);
-        return 1;
     case FIELD_ISOPHOTE:
-    case FIELD_ISOPHOTE_90:
         return isophote_terms(t, g);
     case FIELD_SILHOUETTE:
         g[0] = dot(t, t->v, t->n);
@@ -250,137 +162,111 @@ static int terms_of(const struct terms *t, struct net g[FIELD_TERMS])
     return 0;
 }
 
-/* The sign of a scaled net if all its coefficients have the same. */
-static double sign_of(const struct net *net)
-{
-    return net_sign(net);
-}
-
-/* The factor of field_line.r for the whole net. */
+/* The factor of field_line.r for the whole piece. */
 static double facing_of(const struct terms *t)
 {
     const struct line_field *field = t->field;
     if (field->form == FIELD_PLANE && !t->along_normal) {
-        struct net m = along(t, t->l, field->map.axis);
-        return -sign_of(&m);
+        return -range_sign(along(t, t->l, field->map.axis));
     }
     if (field->form != FIELD_AROUND && field->form != FIELD_AZIMUTH)
         return 0;
     if (!t->along_normal)
         return 1;
-    struct net vn = dot(t, t->v, t->n);
-    return -sign_of(&vn);
+    return -range_sign(dot(t, t->v, t->n));
 }
+
+/* The doubles that the numbers of a formula take at most. */
+enum { MOST_NUMBERS = 120 };
 
 void field_find_bounds(const struct line_field *field, struct vec origin, double reach,
-                       struct field_nets *nets)
+                       struct field_bounds *bounds)
 {
-    double memory[400], one = 1;
-    struct net_room room = {memory, 0};
-    struct net s[3], n[3], g[FIELD_TERMS];
-    for (int d = 0; d < 3; d++) {
-        s[d] = (struct net){0, 0, &reach};
-        n[d] = (struct net){0, 0, &one};
-    }
-    struct terms t = {.numbers = &BOUNDS, .room = &room, .field = field};
+    double memory[MOST_NUMBERS], one = 1;
+    struct number_room room = {memory, 0};
+    const double *s[3] = {&reach, &reach, &reach}, *n[3] = {&one, &one, &one}, *g[FIELD_TERMS];
+    struct terms t = {.numbers = &NUMBERS_BOUND, .room = &room, .field = field};
     start(&t, origin, s, n);
-    nets->n_terms = terms_of(&t, g);
-    for (int k = 0; k < nets->n_terms; k++)
-        nets->bound[k] = g[k].c[0];
+    bounds->n_terms = terms_of(&t, g);
+    for (int k = 0; k < bounds->n_terms; k++)
+        bounds->g[k] = g[k][0];
 }
 
-void field_make_nets(const struct line_field *field, struct net_room *room, struct vec origin,
-                     const struct bezier_nets *patch, struct field_nets *nets)
-{
-    struct terms t = {.numbers = &NETS, .room = room, .field = field};
-    struct net g[FIELD_TERMS];
-    start(&t, origin, patch->s, patch->n);
-    nets->n_terms = terms_of(&t, g);
-    nets->facing = facing_of(&t);
-    int m = 0, n = 0;
-    for (int k = 0; k < nets->n_terms; k++) {
-        m = g[k].m > m ? g[k].m : m;
-        n = g[k].n > n ? g[k].n : n;
-    }
-    for (int k = 0; k < nets->n_terms; k++) {
-        /* A copy, because two terms may share their coefficients. */
-        struct net raised = net_raised(room, &g[k], m, n);
-        nets->g[k] = net_take(room, m, n);
-        for (size_t i = 0; i < net_size(&raised); i++)
-            nets->g[k].c[i] = raised.c[i];
-        net_unscale(&nets->g[k]);
-    }
-    field_find_bounds(field, origin, patch->reach, nets);
-}
-
-void field_make_box(const struct line_field *field, struct vec origin,
-                    const struct bezier_box *patch, struct field_box *box)
-{
-    double memory[800], from_s[3][2], from_n[3][2];
-    struct net_room room = {memory, 0};
-    struct net s[3], n[3], g[FIELD_TERMS];
-    for (int d = 0; d < 3; d++) {
-        for (int k = 0; k < 2; k++) {
-            from_s[d][k] = patch->s[d][k];
-            from_n[d][k] = patch->n[d][k];
-        }
-        s[d] = (struct net){0, 1, from_s[d]};
-        n[d] = (struct net){0, 1, from_n[d]};
-    }
-    struct terms t = {.numbers = &INTERVALS, .room = &room, .field = field};
-    start(&t, origin, s, n);
-    box->n_terms = terms_of(&t, g);
-    for (int i = 0; i < box->n_terms; i++)
-        for (int k = 0; k < 2; k++)
-            box->g[i][k] = g[i].c[k];
-}
-
-int field_box_sign(const struct field_box *box, const struct field_line *line)
-{
-    double middle = 0, radius = 0, size = 0;
-    for (int k = 0; k < box->n_terms; k++) {
-        middle += line->w[k] * box->g[k][0];
-        radius += fabs(line->w[k]) * box->g[k][1];
-        size += fabs(line->w[k] * box->g[k][0]);
-    }
-    /* Where the rounding of the middle may count, nothing is known. */
-    bool is_known = fabs(middle) > radius + 1e-9 * size;
-    return !is_known ? 0 : middle > 0 ? 1 : -1;
-}
-
-double field_bound(const struct field_nets *nets, const struct field_line *line)
+double field_bound(const struct field_bounds *bounds, const struct field_line *line)
 {
     double bound = 0;
-    for (int k = 0; k < nets->n_terms; k++)
-        bound += fabs(line->w[k]) * nets->bound[k];
+    for (int k = 0; k < bounds->n_terms; k++)
+        bound += fabs(line->w[k]) * bounds->g[k];
     return bound;
+}
+
+void field_find_range(const struct line_field *field, struct vec origin,
+                      const struct piece_range *piece, struct field_range *range)
+{
+    double memory[MOST_NUMBERS * RANGE_SIZE];
+    struct number_room room = {memory, 0};
+    const double *s[3] = {piece->s[0], piece->s[1], piece->s[2]};
+    const double *n[3] = {piece->n[0], piece->n[1], piece->n[2]}, *g[FIELD_TERMS];
+    struct terms t = {.numbers = &NUMBERS_RANGE, .room = &room, .field = field};
+    start(&t, origin, s, n);
+    range->n_terms = terms_of(&t, g);
+    range->facing = facing_of(&t);
+    for (int k = 0; k < FIELD_TERMS; k++)
+        if (k < range->n_terms)
+            memcpy(range->g[k], g[k], sizeof range->g[k]);
+        else
+            memset(range->g[k], 0, sizeof range->g[k]);
+}
+
+void field_line_range(const struct field_range *range, const struct field_line *line,
+                      double out[RANGE_SIZE])
+{
+    const double *const g[FIELD_TERMS] = {range->g[0], range->g[1], range->g[2]};
+    range_combine(line->w, g, out);
+}
+
+/* The sign of factors times the terms, if it is the same throughout by the terms' own ranges; else 0. */
+static int quick_sign(const struct field_range *range, const double factor[FIELD_TERMS])
+{
+    double middle = 0, off = 0, size = 0;
+    for (int k = 0; k < range->n_terms; k++) {
+        double part = factor[k] * range->g[k][0];
+        middle += part;
+        size += fabs(part);
+        off += fabs(factor[k]) * range->g[k][RANGE_OFF];
+    }
+    /* Where the rounding of the middle may count, nothing is known. */
+    return !(fabs(middle) > off + 1e-9 * (off + size)) ? 0 : middle > 0 ? 1 : -1;
+}
+
+int field_quick_sign(const struct field_range *range, const struct field_line *line)
+{
+    return quick_sign(range, line->w);
+}
+
+bool field_is_never_met(const struct field_range *range, const struct field_line *line)
+{
+    return range->facing != 0 && quick_sign(range, line->r) * range->facing < 0;
 }
 
 void field_jet(const struct line_field *field, const struct field_line *line, struct vec origin,
                const struct bezier_jet *at, double out[3])
 {
-    double memory[1200], start_s[3][3], start_n[3][3];
-    struct net_room room = {memory, 0};
-    struct net s[3], n[3], g[FIELD_TERMS];
+    double memory[3 * MOST_NUMBERS], from_s[3][3], from_n[3][3];
+    struct number_room room = {memory, 0};
     for (int k = 0; k < 3; k++) {
-        const double from_s[3] = {at->s[k].x, at->s[k].y, at->s[k].z};
-        const double from_n[3] = {at->n[k].x, at->n[k].y, at->n[k].z};
-        for (int d = 0; d < 3; d++) {
-            start_s[d][k] = from_s[d];
-            start_n[d][k] = from_n[d];
-        }
+        from_s[0][k] = at->s[k].x, from_s[1][k] = at->s[k].y, from_s[2][k] = at->s[k].z;
+        from_n[0][k] = at->n[k].x, from_n[1][k] = at->n[k].y, from_n[2][k] = at->n[k].z;
     }
-    for (int d = 0; d < 3; d++) {
-        s[d] = (struct net){0, 2, start_s[d]};
-        n[d] = (struct net){0, 2, start_n[d]};
-    }
-    struct terms t = {.numbers = &JETS, .room = &room, .field = field};
+    const double *s[3] = {from_s[0], from_s[1], from_s[2]};
+    const double *n[3] = {from_n[0], from_n[1], from_n[2]}, *g[FIELD_TERMS];
+    struct terms t = {.numbers = &NUMBERS_JET, .room = &room, .field = field};
     start(&t, origin, s, n);
     int count = terms_of(&t, g);
     for (int k = 0; k < 3; k++) {
         out[k] = 0;
         for (int i = 0; i < count; i++)
-            out[k] += line->w[i] * g[i].c[k];
+            out[k] += line->w[i] * g[i][k];
     }
 }
 
@@ -403,7 +289,7 @@ static double own_place(const struct line_field *field, double place)
     return 0.5 + (quarter & 1 ? offset * map->width / map->height : offset);
 }
 
-bool line_field_init(struct line_field *field, const struct line_map *map, double place)
+bool line_field_init(struct line_field *field, const struct line_map *map)
 {
     *field = (struct line_field){.map = *map};
     bool is_light = map->family == LINES_REFLECTION || map->family == LINES_HIGHLIGHT;
@@ -419,15 +305,14 @@ bool line_field_init(struct line_field *field, const struct line_map *map, doubl
         return false;
     field->by_t = quarter & 1;
     if (map->family == LINES_ISOPHOTE) {
-        bool is_90 = own_place(field, place) == 0.5;
-        field->form = is_90 ? FIELD_ISOPHOTE_90 : FIELD_ISOPHOTE;
+        field->form = FIELD_ISOPHOTE;
         return !field->by_t;
     }
     bool by_elevation = (map->family == LINES_ZEBRA) != field->by_t;
     if (is_light && map->kind == LIGHT_TUNNEL)
         field->form = field->by_t ? FIELD_ALONG : FIELD_AROUND;
     else if (by_elevation)
-        field->form = own_place(field, place) == 0.5 ? FIELD_LEVEL : FIELD_ELEVATION;
+        field->form = FIELD_ELEVATION;
     else
         field->form = FIELD_AZIMUTH;
     return true;
@@ -468,24 +353,41 @@ bool field_line_init(const struct line_field *field, double place, struct field_
         line->r[0] = c;
         line->r[1] = s;
         break;
-    case FIELD_ELEVATION: {
-        double sine = sin(M_PI * own);
-        line->w[1] = -sine * sine;
+    case FIELD_ELEVATION:
+        line->w[1] = -sin(M_PI * own);
         break;
-    }
-    case FIELD_ISOPHOTE: {
-        double cosine = sin(M_PI * own); /* of the angle, with the other sign */
-        line->w[1] = -cosine * cosine;
+    case FIELD_ISOPHOTE:
+        line->w[1] = sin(M_PI * own); /* the cosine of the angle with the other sign */
         break;
-    }
-    case FIELD_LEVEL:
-    case FIELD_ISOPHOTE_90:
     case FIELD_SILHOUETTE:
         break;
     }
     bool is_open = field->form == FIELD_PLANE || field->form == FIELD_ALONG;
     bool has_poles = field->form == FIELD_ELEVATION || field->form == FIELD_ISOPHOTE;
     return is_open || (has_poles ? fabs(own) < 0.5 : fabs(own) <= 0.5);
+}
+
+/* Whether the ray of a point meets a tunnel's line on its way into the tunnel: F is 0 there, but the light is met on the far
+ * side. */
+static bool comes_from_outside(const struct line_field *field, const struct field_line *line,
+                               struct vec x, struct vec n)
+{
+    const struct line_map *map = &field->map;
+    struct vec r = line_ray(map, x, n), l = vec_sub(x, map->centre);
+    double q[2] = {vec_dot(r, map->zero), vec_dot(r, map->next)};
+    if (field->form == FIELD_AROUND) /* r[2] and r[1] are the cosine and sine of the line's angle */
+        return line->r[2] * q[0] + line->r[1] * q[1] < 0;
+    double away = line->w[1] - vec_dot(l, map->axis), speed = vec_dot(r, map->axis);
+    double outwards = vec_dot(l, map->zero) * q[0] + vec_dot(l, map->next) * q[1];
+    double tau = away / speed;
+    return tau < 0 || outwards + tau * (q[0] * q[0] + q[1] * q[1]) < 0;
+}
+
+/* Whether a ray has no azimuth: within what line_position.h takes for the pole. */
+static bool is_at_pole(const struct line_map *map, struct vec x, struct vec n)
+{
+    struct vec r = line_ray(map, x, n);
+    return hypot(vec_dot(r, map->zero), vec_dot(r, map->next)) < 2e-6;
 }
 
 double field_residual(const struct line_field *field, const struct field_line *line, struct vec x,
@@ -506,10 +408,9 @@ double field_residual(const struct line_field *field, const struct field_line *l
     double d = (field->by_t ? at.t : at.s) - own;
     bool wraps = field->by_t ? map->t_wraps : map->s_wraps;
     d = wraps ? d - round(d) : d;
-    if (field->form == FIELD_AROUND || field->form == FIELD_AZIMUTH)
-        return fabs(d) < 0.25 ? d * unit : NAN;
-    if (field->form == FIELD_ALONG) /* F is 0 also where the ray comes from outside */
-        return fabs(d) < 0.01 ? d * unit : NAN;
-    bool is_opposite = field->form == FIELD_ELEVATION || field->form == FIELD_ISOPHOTE;
-    return is_opposite && fabs(d) > fabs(d + 2 * own - 1) ? NAN : d * unit;
+    if (field->form == FIELD_AZIMUTH) /* F is 0 also at the opposite angle, and at the pole */
+        return fabs(d) < 0.25 && !is_at_pole(map, x, n) ? d * unit : NAN;
+    if (field->form == FIELD_AROUND || field->form == FIELD_ALONG)
+        return comes_from_outside(field, line, x, n) ? NAN : d * unit;
+    return d * unit;
 }

@@ -1,19 +1,22 @@
-/* Lines of a family on a surface as zero sets of polynomials. Where a patch s(u,v) is polynomial, so is its normal N =
- * s_u x s_v, of any length, and the mirrored view R = (N.N) V - 2 (V.N) N; a ray along R meets a line of a light where
- * a polynomial F in s, N and R vanishes. No square root is left:
+/* Lines of a family on a surface as zero sets of functions. Where a patch s(u,v) is polynomial, so is its normal N = s_u x
+ * s_v, of any length, and the mirrored view R = (N.N) V - 2 (V.N) N; a ray along R meets a line of a light where a function
+ * F of s, N and R vanishes:
  *
  *   plane      with the plane's normal m, the coordinate e on it and L = s - centre: F = A - p B, A = (e.L) (m.R) - (m.L)
  *              (e.R), B = m.R, for the line at e = p
  *   tunnel     around: across the axis, y a point of the circle, q = R and x = L there: F = (y - x) x q. Along: F = |W|^2 -
  *              radius^2 (a.R)^2, W = (a.R) x + (z - a.L) q
- *   azimuth    F = cos R_2 - sin R_1; elevation: F = (a.R)^2 - sin^2 (R.R), for 0 F = a.R
- *   isophote   F = (N.d)^2 - cos^2 (N.N) (d.d), for 90 degrees F = N.d
+ *   azimuth    F = cos R_2 - sin R_1
+ *   elevation  F = a.R - sin |R|, where |R| = (N.N) |V|; of highlight lines |R| = |N|
+ *   isophote   F = N.d - cos |N| |d|
  *   silhouette F = V.N
  *
- * F vanishes also on lines that no ray meets: behind the surface, or at the opposite angle. field_residual() tells.
- * Degrees of F for bicubic patches: reflection on a plane or around a tunnel 16, along a tunnel 32, azimuth 13,
- * elevation 26; of highlight lines 8, 16, 5, 10; isophote 10, towards an eye 16; silhouette 8. (Elber 2001,
- * Graphical Models 63, has such zero sets for silhouettes, isoclines and reflection lines.)
+ * F vanishes also on lines that no ray meets: behind the surface, and of a tunnel where the ray comes from outside.
+ * field_residual() tells. (Elber 2001, Graphical Models 63, has such zero sets for silhouettes, isoclines and reflection
+ * lines, with squares in the place of roots, which add the lines of the opposite angle.)
+ *
+ * F is never made as a polynomial, whose degree would be up to 32, and whose digits would be lost where N is short: it is evaluated at points, and
+ * bounded over pieces by ranges of its second derivatives (numbers.h).
  *
  * Pure, any thread, cannot fail. */
 #ifndef SHEEN_FIELDS_FIELD_H
@@ -22,6 +25,8 @@
 #include <stdbool.h>
 
 #include "server/curves/fields/bezier.h"
+#include "server/curves/fields/numbers.h"
+#include "server/curves/fields/piece.h"
 #include "server/curves/line_position.h"
 
 enum field_form {
@@ -29,14 +34,12 @@ enum field_form {
     FIELD_AROUND,    /* a tunnel's angle */
     FIELD_ALONG,     /* the place along a tunnel's axis */
     FIELD_AZIMUTH,   /* about an axis at infinity */
-    FIELD_ELEVATION, /* at infinity, but 0 */
-    FIELD_LEVEL,     /* elevation 0 */
-    FIELD_ISOPHOTE,  /* but 90 degrees */
-    FIELD_ISOPHOTE_90,
+    FIELD_ELEVATION, /* at infinity */
+    FIELD_ISOPHOTE,
     FIELD_SILHOUETTE,
 };
 
-/* F = w[0] G[0] + w[1] G[1] + w[2] G[2], with polynomials G that all lines of a field share. */
+/* F = w[0] G[0] + w[1] G[1] + w[2] G[2], with functions G that all lines of a field share. */
 enum { FIELD_TERMS = 3 };
 
 struct line_field {
@@ -51,59 +54,56 @@ struct line_field {
 struct field_line {
     double place; /* on the light: s' of shaders/README.md, "Patterns" */
     double w[FIELD_TERMS];
-    /* Where r[0] G[0] + ... times field_nets.facing is negative, no ray meets the line. All 0: not known. */
+    /* Where r[0] G[0] + ... times field_range.facing is negative, no ray meets the line. All 0: not known. */
     double r[FIELD_TERMS];
 };
 
-/* The form of the field to which the line at `place` belongs: s' = 1/2 + a / w of a pattern that is turned by
- * `rotation_deg`. False if such lines are no polynomials: patterns on a tunnel or at infinity that are turned by another
- * angle than a multiple of 90 degrees. Lines of an isophote have no t. */
-bool line_field_init(struct line_field *field, const struct line_map *map, double place);
+/* The field of the lines s' = 1/2 + a / w of a pattern that is turned by `rotation_deg`. False if such lines have no F: patterns
+ * on a tunnel or at infinity that are turned by another angle than a multiple of 90 degrees. Lines of an isophote have no
+ * t. */
+bool line_field_init(struct line_field *field, const struct line_map *map);
 /* The silhouette for the line eye of `map`. */
 void silhouette_field_init(struct line_field *field, const struct line_map *map);
 
 /* False if the light has no such place: beyond the ends of a light that is closed or at infinity. */
 bool field_line_init(const struct line_field *field, double place, struct field_line *line);
 
-struct field_nets {
-    struct net g[FIELD_TERMS]; /* of equal degrees, plain; w of terms that a form has not are 0 */
+/* The terms over a piece or a segment, which all lines share: numbers of NUMBERS_RANGE. */
+struct field_range {
+    double g[FIELD_TERMS][RANGE_SIZE];
     int n_terms;
-    double facing;             /* 1, -1, or 0: not known for the whole net */
-    double bound[FIELD_TERMS]; /* rounding is small against 2e-16 of it (LINE_NOISE) */
+    double facing; /* 1, -1, or 0: not known for the whole piece */
 };
+void field_find_range(const struct line_field *field, struct vec origin,
+                      const struct piece_range *piece, struct field_range *range);
 
-/* The doubles that nets of a field take at most. */
-enum { FIELD_ROOM = 1 << 17 };
+/* F of a line: a number of NUMBERS_RANGE. */
+void field_line_range(const struct field_range *range, const struct field_line *line,
+                      double out[RANGE_SIZE]);
+/* The sign of F throughout, if the terms' ranges show that it is one; else 0. Cheap, and less often known than by
+ * field_line_range(). */
+int field_quick_sign(const struct field_range *range, const struct field_line *line);
+/* True if no ray meets the line anywhere on the piece. */
+bool field_is_never_met(const struct field_range *range, const struct field_line *line);
 
-/* Makes the nets from those of a patch whose origin is `origin`. */
-void field_make_nets(const struct line_field *field, struct net_room *room, struct vec origin,
-                     const struct bezier_nets *patch, struct field_nets *nets);
-
-/* Sets n_terms and the bounds alone, for points no farther than `reach` from `origin`. */
+/* Bounds of the terms for points no farther than `reach` from `origin` and normals whose coordinates are at most 1: the
+ * rounding of a term is small against 2e-16 of it (LINE_NOISE). */
+struct field_bounds {
+    double g[FIELD_TERMS];
+    int n_terms;
+};
 void field_find_bounds(const struct line_field *field, struct vec origin, double reach,
-                       struct field_nets *nets);
+                       struct field_bounds *bounds);
+/* The sum of the terms' bounds for a line. */
+double field_bound(const struct field_bounds *bounds, const struct field_line *line);
 
-/* Intervals of all values of the terms G over a patch or its side: the middle, then the radius. Cheap, and wide where the
- * normal turns much. */
-struct field_box {
-    double g[FIELD_TERMS][2];
-    int n_terms;
-};
-void field_make_box(const struct line_field *field, struct vec origin,
-                    const struct bezier_box *patch, struct field_box *box);
-/* The sign of F throughout, if the intervals show that it is one; else 0. */
-int field_box_sign(const struct field_box *box, const struct field_line *line);
-
-/* F and its derivatives by u and v at a point of a patch. */
+/* F and its derivatives by u and v at a point of a patch. The normal's largest coordinate is about 1. */
 void field_jet(const struct line_field *field, const struct field_line *line, struct vec origin,
                const struct bezier_jet *at, double out[3]);
 
-/* The sum of the terms' bounds for a line. */
-double field_bound(const struct field_nets *nets, const struct field_line *line);
-
 /* The difference between the place of a surface point (world, unit normal) on the light and the line's, in places; the
  * shorter way around where the light is closed. NaN where the ray does not meet the light, or meets the opposite
- * angle. For a silhouette the cosine between view and normal. */
+ * azimuth. For a silhouette the cosine between view and normal. */
 double field_residual(const struct line_field *field, const struct field_line *line, struct vec x,
                       struct vec n);
 

@@ -25,7 +25,7 @@ enum line_set_result line_set_add(struct line_set *set, const struct line_map *m
 {
     struct line_field field;
     struct field_line line;
-    if (!line_field_init(&field, map, place))
+    if (!line_field_init(&field, map))
         return LINE_NO_CURVE;
     if (!field_line_init(&field, place, &line))
         return LINE_NOT_THERE;
@@ -55,7 +55,7 @@ void line_set_signs(const struct line_set *set, struct vec x, struct vec n,
     memset(signs, 0, sizeof *signs);
     struct bezier_jet at = {.n = {n}}; /* relative to x itself */
     for (uint32_t f = 0; f < set->n_fields; f++) {
-        struct field_nets bounds;
+        struct field_bounds bounds;
         field_find_bounds(&set->field[f], x, 0, &bounds);
         for (uint32_t i = set->first_line[f]; i < set->first_line[f + 1]; i++) {
             double jet[3];

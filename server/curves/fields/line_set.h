@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-#include "server/curves/fields/field.h"
+#include "server/curves/fields/crossings.h"
 
 enum { LINE_SET_MOST_FIELDS = 33, LINE_SET_MOST_LINES = 1024 };
 enum { LINE_SET_WORDS = LINE_SET_MOST_LINES / 64 };
@@ -21,7 +21,7 @@ struct line_set {
 enum line_set_result {
     LINE_ADDED,
     LINE_NOT_THERE, /* the light has no such place */
-    LINE_NO_CURVE,  /* the lines are no polynomials (line_field_init()) */
+    LINE_NO_CURVE,  /* the lines have no F (line_field_init()) */
     LINE_SET_FULL,
 };
 /* Adds the line at `place` of a light. Lines of one light come one after the other. */
@@ -46,11 +46,6 @@ static inline void line_sign_flip(struct line_signs *signs, uint32_t line)
 {
     signs->word[line / 64] ^= (uint64_t)1 << (line % 64);
 }
-
-/* F counts as positive if it is not below -LINE_NOISE times its bound (field_bound()). So where F is 0 along a whole border
- * of patches, as in a model's plane of symmetry, both sides agree on its sign, and the line runs in one of them. The
- * bound is that of products of largest values and so far above F; what F rounds by is below this share of it. */
-#define LINE_NOISE 2e-16
 
 /* The signs at the surface point x (world) with the unit normal n. */
 void line_set_signs(const struct line_set *set, struct vec x, struct vec n,

@@ -72,7 +72,7 @@ static struct traced_point point_of(const struct march *march, const double at[2
                                     const struct bezier_jet *surface, const double jet[3])
 {
     const struct patch_place *place = march->place;
-    struct traced_point point = {.p = vec_add(march->bezier->origin, surface->s[0])};
+    struct traced_point point = {.p = vec_add(march->on->bezier->origin, surface->s[0])};
     trace_face_place(march->tracer->work.tables, place->node, place->x0 + place->width * at[0],
                      place->y0 + place->height * at[1], &point);
     point.n = vec_unit(surface->n[0]);
@@ -80,20 +80,14 @@ static struct traced_point point_of(const struct march *march, const double at[2
     if (steepest > 0)
         point.along = vec_unit(vec_mad(vec_scale(surface->s[1], jet[2] / steepest),
                                        -jet[1] / steepest, surface->s[2]));
-    point.residual = field_residual(march->field, line_of(march), point.p, point.n);
+    point.residual = field_residual(march->on->field, line_of(march), point.p, point.n);
     return point;
 }
 
 static void jet_at(const struct march *march, const double at[2], struct bezier_jet *surface,
                    double jet[3])
 {
-    bezier_jet_at(march->bezier, at[0], at[1], surface);
-    /* F needs no unit length of the normal, but its powers must not overflow or vanish. */
-    struct vec n = surface->n[0];
-    double largest = fmax(fmax(fabs(n.x), fabs(n.y)), fabs(n.z));
-    for (int k = 0; k < 3 && largest > 0; k++)
-        surface->n[k] = vec_scale(surface->n[k], 1 / largest);
-    field_jet(march->field, line_of(march), march->bezier->origin, surface, jet);
+    patch_field_jet(march->on, line_of(march), at, surface, jet);
 }
 
 /* Moves an end along its border to where F is 0: roots of borders are found in nets, which round more than the surface, and

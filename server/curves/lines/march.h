@@ -7,9 +7,8 @@
 /* A patch and a line on it. */
 struct march {
     struct tracer *tracer;
-    const struct bezier *bezier;
     const struct patch_place *place;
-    const struct line_field *field;
+    const struct patch_field *on;
     uint32_t line; /* its number in the set */
 };
 

@@ -112,25 +112,21 @@ void sides_agree(struct sides_work *work, double t, struct line_signs *signs,
     }
 }
 
-/* The roots of one line on one side of a patch. c has the n + 1 coefficients along the border. */
-static void find_line(struct sides_work *work, uint32_t line, const double *c, int n, double from,
-                      double to, struct line_signs *signs, struct root_list *list)
+/* The roots of one line on one side of a patch, which is run through from `from` to `to`. */
+static void find_line(struct sides_work *work, uint32_t line, const struct crossings *side,
+                      const struct patch_field *on, double from, double to,
+                      struct line_signs *signs, struct root_list *list)
 {
-    double roots[NET_MOST_DEGREE];
-    bool all_above = true, all_below = true;
-    for (int k = 0; k <= n; k++) {
-        all_above = all_above && !(c[k] < 0);
-        all_below = all_below && c[k] < 0;
-    }
-    if (line_sign(signs, line) != (c[0] < 0)) {
-        add(work, list, line, from);
-        line_sign_flip(signs, line);
-    }
-    if (all_above || all_below)
+    double at[MOST_CROSSINGS];
+    const struct field_line *wanted = &work->set->line[line];
+    int sign = field_quick_sign(&side->terms, wanted), n;
+    bool negative[2] = {line_sign(signs, line)};
+    if (sign && (sign < 0) == negative[0])
         return;
-    int n_roots = curve_roots(c, n, roots);
-    for (int k = 0; k < n_roots; k++) {
-        add(work, list, line, from + roots[k] * (to - from));
+    negative[1] = patch_field_is_negative(on, wanted, side->segment.to);
+    n = crossings_find(side, on, wanted, negative, at);
+    for (int k = 0; k < n; k++) {
+        add(work, list, line, from + at[k] * (to - from));
         line_sign_flip(signs, line);
     }
 }
@@ -140,42 +136,19 @@ void sides_find_patch(struct sides_work *work, const struct limit_patch *patch, 
 {
     const struct line_set *set = work->set;
     struct bezier bezier;
-    struct bezier_nets along;
-    struct bezier_box box;
-    size_t mark = work->room.used;
-    bool is_reversed = from > to;
-    double low = fmin(from, to), high = fmax(from, to);
+    struct segment segment;
     bezier_of_patch(&bezier, work->tables, patch);
-    bezier_side_nets(&bezier, &work->room, (int)side, &along);
-    bezier_box_of(&along, &box);
+    segment_of_bezier(&bezier, (int)side, &segment);
+    if (from > to)
+        segment_reverse(&segment);
     for (uint32_t f = 0; f < set->n_fields; f++) {
-        struct field_nets nets = {.n_terms = 0};
-        struct field_box field_box;
-        size_t before = work->room.used;
-        field_make_box(&set->field[f], bezier.origin, &box, &field_box);
-        for (uint32_t i = set->first_line[f]; i < set->first_line[f + 1]; i++) {
-            const struct field_line *line = &set->line[i];
-            int sign = field_box_sign(&field_box, line);
-            if (sign) {
-                const double c = sign;
-                find_line(work, i, &c, 0, low, high, signs, list);
-                continue;
-            }
-            if (!nets.n_terms) /* the first line that needs them */
-                field_make_nets(&set->field[f], &work->room, bezier.origin, &along, &nets);
-            double c[NET_MOST_DEGREE + 1], noise = LINE_NOISE * field_bound(&nets, line);
-            int n = nets.g[0].m;
-            for (int k = 0; k <= n; k++) {
-                double sum = noise;
-                for (int g = 0; g < nets.n_terms; g++)
-                    sum += line->w[g] * nets.g[g].c[k];
-                c[is_reversed ? n - k : k] = sum;
-            }
-            find_line(work, i, c, n, low, high, signs, list);
-        }
-        work->room.used = before;
+        struct patch_field on;
+        struct crossings along;
+        patch_field_init(&on, &set->field[f], &bezier);
+        crossings_init(&along, &on, &segment);
+        for (uint32_t i = set->first_line[f]; i < set->first_line[f + 1]; i++)
+            find_line(work, i, &along, &on, fmin(from, to), fmax(from, to), signs, list);
     }
-    work->room.used = mark;
 }
 
 /* The sides of the patches along a side of a leaf, in the order in which the side runs, between t = from and to. */

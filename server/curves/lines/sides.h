@@ -24,7 +24,6 @@ struct sides_work {
     const struct limit_tables *tables;
     const struct line_set *set;
     const uint8_t *levels; /* of each node: how many levels of a CORNER are traced */
-    struct net_room room;  /* 2 FIELD_ROOM doubles */
     uint64_t next_node;    /* the number of the next crossing */
     bool failed;           /* memory was short */
 };

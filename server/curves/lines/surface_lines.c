@@ -112,13 +112,9 @@ static bool begin_borders(struct surface_lines *lines, size_t *n_slices, struct 
     return lines->parts && lines->first ? true : out_of_memory(lines, error);
 }
 
-static bool work_init(struct surface_lines *lines, struct sides_work *work)
+static struct sides_work work_of(const struct surface_lines *lines)
 {
-    *work =
-        (struct sides_work){.tables = lines->tables, .set = lines->set, .levels = lines->levels};
-    work->room.memory = malloc(4 * FIELD_ROOM * sizeof(double));
-    work->failed = !work->room.memory;
-    return !work->failed;
+    return (struct sides_work){.tables = lines->tables, .set = lines->set, .levels = lines->levels};
 }
 
 static void slice_borders(struct surface_lines *lines, struct part *part, struct sides_work *work,
@@ -172,19 +168,21 @@ static bool begin_faces(struct surface_lines *lines, size_t *n_slices, struct er
 static void slice_faces(struct surface_lines *lines, size_t slice)
 {
     size_t used = lines->bytes, room = lines->most_bytes > used ? lines->most_bytes - used : 0;
-    struct tracer tracer = {.tolerance = lines->tolerance,
+    struct tracer tracer = {.work = work_of(lines),
+                            .squares = trace_squares_take(),
+                            .tolerance = lines->tolerance,
                             .most_points = room / sizeof(struct traced_point),
                             .cancelled = &lines->base.cancelled};
     const struct border_roots borders = {&lines->vertices, lines->sign, lines->first, lines->root};
     size_t first = slice * FACES_OF_SLICE, last = first + FACES_OF_SLICE;
-    if (!work_init(lines, &tracer.work)) {
+    if (!tracer.squares) {
         lines->is_short = true;
         return;
     }
     for (size_t face = first; face < last && face < lines->tables->n_faces; face++)
         if (!lines->base.cancelled && !lines->is_over)
             trace_face(&tracer, (uint32_t)face, &borders);
-    free(tracer.work.room.memory);
+    free(tracer.squares);
     if (tracer.is_over)
         lines->is_over = true;
     else if (tracer.work.failed)
@@ -240,12 +238,8 @@ static bool begin(struct computation *computation, unsigned phase, size_t *n_sli
 static void slice_light(struct surface_lines *lines, unsigned phase, size_t slice)
 {
     struct part *part = phase == BORDERS ? &lines->parts[slice] : NULL;
-    struct sides_work work = {0};
+    struct sides_work work = work_of(lines);
     size_t first = slice * FACES_OF_LIGHT_SLICE, last = first + FACES_OF_LIGHT_SLICE;
-    if (part && !work_init(lines, &work)) {
-        lines->is_short = true;
-        return;
-    }
     for (size_t face = first; face < last && face < lines->tables->n_faces; face++) {
         if (lines->base.cancelled)
             break;
@@ -254,7 +248,6 @@ static void slice_light(struct surface_lines *lines, unsigned phase, size_t slic
         else
             slice_vertices(lines, (uint32_t)face);
     }
-    free(work.room.memory);
     if (part && work.failed)
         lines->is_short = true;
     if (part)

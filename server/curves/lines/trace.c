@@ -22,9 +22,22 @@ struct cell_side {
     int n;
 };
 
+/* A square of a patch, for all lines of a field: what is found once is kept for the lines that follow. */
+struct trace_square {
+    struct piece piece;
+    struct piece_range range;
+    struct field_range terms;
+    struct crossings spokes[4];    /* from the middles of the sides to the middle */
+    struct trace_square *quarters; /* 4, or NULL */
+    int field, spoke_field[4]; /* of which field the terms are, and those of each spoke; -1: none */
+};
+
+/* Squares down to this depth are kept until the patch is done: 1 + 4 + 16 + 64. Below, 4 squares of each depth are in use. */
+enum { KEPT_DEPTH = 3, MOST_SQUARES = 85 + 4 * (MOST_DEPTH - KEPT_DEPTH) };
+
 /* A square of a patch for one line. */
 struct cell {
-    struct net f; /* with the noise added, so that signs are those of the borders */
+    struct trace_square *at;
     struct march_square square;
     bool sign[4];
     struct cell_side side[4];
@@ -34,12 +47,20 @@ struct cell {
 /* One line on one patch. */
 struct cells {
     struct march march;
-    double r[FIELD_TERMS]; /* where r G < 0 nothing is met; all 0: not known */
+    int field;
+    int *n_squares; /* of the tracer's, which are in use */
+    double noise;
+    size_t first_mark; /* of the patch, in the tracer's marks */
     struct cell_root *pool;
     int n_pool;
     int n_cells;
     bool overflows; /* one of the limits above was reached */
 };
+
+struct trace_square *trace_squares_take(void)
+{
+    return malloc(MOST_SQUARES * sizeof(struct trace_square));
+}
 
 void region_finish(struct region *region)
 {
@@ -94,17 +115,47 @@ static void join_nearest(struct cells *cells, const struct cell *cell)
     }
 }
 
+/* Whether rays meet the line at the middle or at a corner of a square. */
+static bool is_met_anywhere(const struct cells *cells, const struct march_square *square)
+{
+    for (int k = 0; k < 5; k++) {
+        const double share[5][2] = {{0.5, 0.5}, {0, 0}, {1, 0}, {1, 1}, {0, 1}};
+        const double at[2] = {square->at[0] + square->size * share[k][0],
+                              square->at[1] + square->size * share[k][1]};
+        if (!isnan(march_point(&cells->march, at).residual))
+            return true;
+    }
+    return false;
+}
+
+/* The node of the line's mark within the tolerance of a point; 0 if there is none. Around a point where the surface has no normal
+ * many squares are undecided. */
+static uint64_t node_of_mark(const struct cells *cells, const struct traced_point *at)
+{
+    const struct tracer *tracer = cells->march.tracer;
+    for (size_t k = cells->first_mark; k < tracer->out.n_marks; k++) {
+        const struct traced_mark *mark = &tracer->out.mark[k];
+        if (mark->line == cells->march.line && mark->kind == MARK_SINGULAR &&
+            vec_length(vec_sub(mark->at.p, at->p)) <= tracer->tolerance)
+            return mark->node;
+    }
+    return 0;
+}
+
 /* Marks the square, and lets all arcs at its border end in the mark. */
 static void mark(struct cells *cells, const struct cell *cell)
 {
     struct tracer *tracer = cells->march.tracer;
     const struct march_square *square = &cell->square;
     double middle[2] = {square->at[0] + 0.5 * square->size, square->at[1] + 0.5 * square->size};
-    struct march_end end = {{middle[0], middle[1]}, -1, tracer->work.next_node++};
+    if (cell->depth == MOST_DEPTH && n_roots(cell) == 0 && !is_met_anywhere(cells, square))
+        return;
     struct traced_point at = march_point(&cells->march, middle);
-    if (isnan(at.residual) && n_roots(cell) == 0)
-        return; /* no ray meets it */
-    march_mark(tracer, MARK_SINGULAR, cells->march.line, end.node, &at);
+    struct march_end end = {{middle[0], middle[1]}, -1, node_of_mark(cells, &at)};
+    if (!end.node) {
+        end.node = tracer->work.next_node++;
+        march_mark(tracer, MARK_SINGULAR, cells->march.line, end.node, &at);
+    }
     for (int s = 0; s < 4; s++) {
         for (int k = 0; k < cell->side[s].n; k++) {
             struct march_end from = end_at(square, s, &cell->side[s].root[k]);
@@ -185,64 +236,127 @@ static bool sign_at_middle(const struct cell *cell, int side)
     return sign;
 }
 
-/* The crossings on the border from the middle of a side to the middle of the square. c has the n + 1 coefficients there. */
-static struct cell_side spoke(struct cells *cells, const double *c, int n, bool start, bool end)
+static struct trace_square *take_squares(struct cells *cells, int n)
 {
-    double t[NET_MOST_DEGREE + 2];
-    int count = 0;
-    bool sign = c[0] < 0;
-    if (sign != start)
-        t[count++] = 0;
-    int found = curve_roots(c, n, t + count);
-    sign ^= found & 1;
-    count += found;
-    if (sign != end)
-        t[count++] = 1;
-    struct cell_root *roots = take_roots(cells, count);
-    for (int k = 0; roots && k < count; k++)
-        roots[k] = (struct cell_root){t[k], cells->march.tracer->work.next_node++};
-    return (struct cell_side){roots, roots ? count : 0};
+    struct trace_square *squares = cells->march.tracer->squares + *cells->n_squares;
+    *cells->n_squares += n;
+    for (int k = 0; k < n; k++) {
+        squares[k].quarters = NULL;
+        squares[k].field = -1;
+        for (int e = 0; e < 4; e++)
+            squares[k].spoke_field[e] = -1;
+    }
+    return squares;
+}
+
+/* Makes what a square needs for a field. */
+static void find_terms(const struct cells *cells, struct trace_square *square)
+{
+    const struct patch_field *on = cells->march.on;
+    if (square->field < 0)
+        piece_find_range(&square->piece, &square->range);
+    if (square->field != cells->field)
+        field_find_range(on->field, on->bezier->origin, &square->range, &square->terms);
+    square->field = cells->field;
+}
+
+static void find_quarters(struct cells *cells, struct trace_square *square)
+{
+    if (!square->quarters) {
+        struct piece pieces[4];
+        square->quarters = take_squares(cells, 4);
+        piece_quarter(&square->piece, pieces);
+        for (int k = 0; k < 4; k++)
+            square->quarters[k].piece = pieces[k];
+    }
+    for (int k = 0; k < 4; k++)
+        find_terms(cells, &square->quarters[k]);
+}
+
+/* Finds the crossings on spoke e, which lies between quarters e and e + 1, where the line's signs are `negative` at its ends. */
+static int find_on_spoke(struct cells *cells, struct trace_square *square, int e,
+                         double range[4][RANGE_SIZE], const bool negative[2],
+                         double at[MOST_CROSSINGS])
+{
+    const struct patch_field *on = cells->march.on;
+    const struct field_line *line = &cells->march.tracer->work.set->line[cells->march.line];
+    const double *beside[2] = {range[e], range[(e + 1) & 3]};
+    int axis = !(e & 1);
+    struct segment segment;
+    for (int k = 0; k < 2; k++) {
+        bool is_known = line_range_sign(beside[k], cells->noise) ||
+                        range_slope_sign(beside[k], axis, cells->noise);
+        if (is_known && negative[0] == negative[1])
+            return 0;
+        if (is_known) {
+            piece_side(&square->quarters[e].piece, (e + 1) & 3, &segment);
+            at[0] = crossings_only(&segment, on, line, negative[0]);
+            return 1;
+        }
+    }
+    if (square->spoke_field[e] != cells->field) {
+        piece_side(&square->quarters[e].piece, (e + 1) & 3, &segment);
+        crossings_init(&square->spokes[e], on, &segment);
+        square->spoke_field[e] = cells->field;
+    }
+    return crossings_find(&square->spokes[e], on, line, negative, at);
+}
+
+static struct cell_side spoke(struct cells *cells, struct trace_square *square, int e,
+                              double range[4][RANGE_SIZE], bool start, bool end)
+{
+    double at[MOST_CROSSINGS];
+    const bool negative[2] = {start, end};
+    int n = find_on_spoke(cells, square, e, range, negative, at);
+    struct cell_root *roots = take_roots(cells, n);
+    for (int k = 0; roots && k < n; k++)
+        roots[k] = (struct cell_root){at[k], cells->march.tracer->work.next_node++};
+    return (struct cell_side){roots, roots ? n : 0};
+}
+
+/* Whether F has the same sign in all of a square, by its quarters and theirs. */
+static bool is_empty(struct cells *cells, struct trace_square *square, int sign, int depth)
+{
+    double range[RANGE_SIZE];
+    const struct field_line *line = &cells->march.tracer->work.set->line[cells->march.line];
+    if (field_quick_sign(&square->terms, line) == sign || field_is_never_met(&square->terms, line))
+        return true;
+    field_line_range(&square->terms, line, range);
+    if (line_range_sign(range, cells->noise) == sign)
+        return true;
+    if (depth >= KEPT_DEPTH || range[0] * sign < 0)
+        return false;
+    find_quarters(cells, square);
+    for (int k = 0; k < 4; k++)
+        if (!is_empty(cells, &square->quarters[k], sign, depth + 1))
+            return false;
+    return true;
 }
 
 static void trace_cell(struct cells *cells, const struct cell *cell);
 
-/* The coefficients of F on spoke e, from the middle of side e to the middle, out of the quarters of the net. */
-static int spoke_coefficients(const struct net quarter[4], int e, double *c)
-{
-    /* Spokes 0 and 3 run upwards along the first and last row of quarters 1 and 0, spokes 1 and 2 the other way. */
-    const struct net *net = &quarter[e == 3 ? 0 : e == 2 ? 2 : 1];
-    bool along_v = e == 0 || e == 2, backwards = e == 1 || e == 2;
-    int n = along_v ? net->n : net->m, width = net->n + 1;
-    for (int k = 0; k <= n; k++)
-        c[backwards ? n - k : k] = along_v ? net->c[k] : net->c[k * width + net->n];
-    return n;
-}
-
 static void split(struct cells *cells, const struct cell *cell)
 {
-    struct net_room *room = &cells->march.tracer->work.room;
-    size_t mark_room = room->used;
-    int mark_pool = cells->n_pool, m = cell->f.m, n = cell->f.n;
-    struct net half[2], quarter[4];
-    for (int k = 0; k < 4; k++)
-        quarter[k] = net_take(room, m, n);
-    for (int k = 0; k < 2; k++)
-        half[k] = net_take(room, m, n);
-    net_halve(&cell->f, 0, &half[0], &half[1]);
-    net_halve(&half[0], 1, &quarter[0], &quarter[3]);
-    net_halve(&half[1], 1, &quarter[1], &quarter[2]);
-    bool centre = quarter[2].c[0] < 0, middle[4];
+    int mark_pool = cells->n_pool, mark_squares = *cells->n_squares;
+    double size = 0.5 * cell->square.size;
+    const double at[2] = {cell->square.at[0] + size, cell->square.at[1] + size};
+    const struct field_line *line = &cells->march.tracer->work.set->line[cells->march.line];
+    bool middle[4];
     struct cell_side spokes[4];
+    double range[4][RANGE_SIZE];
+    find_quarters(cells, cell->at);
+    if (n_roots(cell) == 0 && is_empty(cells, cell->at, cell->sign[0] ? -1 : 1, cell->depth))
+        goto finish;
+    bool centre = patch_field_is_negative(cells->march.on, line, at);
+    for (int k = 0; k < 4; k++)
+        field_line_range(&cell->at->quarters[k].terms, line, range[k]);
     for (int e = 0; e < 4; e++) {
-        double c[NET_MOST_DEGREE + 1];
-        int degree = spoke_coefficients(quarter, e, c);
         middle[e] = sign_at_middle(cell, e);
-        spokes[e] = spoke(cells, c, degree, middle[e], centre);
+        spokes[e] = spoke(cells, cell->at, e, range, middle[e], centre);
     }
     for (int k = 0; k < 4; k++) {
         int next = (k + 1) & 3, before = (k + 3) & 3, mark_child = cells->n_pool;
-        double size = 0.5 * cell->square.size;
-        struct cell child = {.f = quarter[k],
+        struct cell child = {.at = &cell->at->quarters[k],
                              .square = {{cell->square.at[0] + (k == 1 || k == 2 ? size : 0),
                                          cell->square.at[1] + (k >= 2 ? size : 0)},
                                         size},
@@ -258,78 +372,66 @@ static void split(struct cells *cells, const struct cell *cell)
         trace_cell(cells, &child);
         cells->n_pool = mark_child;
     }
+finish:
     cells->n_pool = mark_pool;
-    room->used = mark_room;
+    if (cell->depth >= KEPT_DEPTH) {
+        cell->at->quarters = NULL;
+        *cells->n_squares = mark_squares;
+    }
+}
+
+/* Marks a patch that the line covers: F is 0, but for rounding. */
+static bool mark_flat(struct cells *cells)
+{
+    static const double places[7][2] = {{0.5, 0.5},   {0.11, 0.23}, {0.83, 0.17}, {0.71, 0.89},
+                                        {0.29, 0.67}, {0.41, 0.05}, {0.97, 0.53}};
+    struct tracer *tracer = cells->march.tracer;
+    const struct field_line *line = &tracer->work.set->line[cells->march.line];
+    for (int k = 0; k < 7; k++) {
+        double jet[3];
+        patch_field_jet(cells->march.on, line, places[k], NULL, jet);
+        if (!(fabs(jet[0]) <= 0.5 * cells->noise))
+            return false;
+    }
+    struct traced_point point = march_point(&cells->march, places[0]);
+    if (!isnan(point.residual))
+        march_mark(tracer, MARK_FLAT, cells->march.line, tracer->work.next_node++, &point);
+    return true;
 }
 
 static void trace_cell(struct cells *cells, const struct cell *cell)
 {
     struct tracer *tracer = cells->march.tracer;
+    const struct field_line *line = &tracer->work.set->line[cells->march.line];
     int roots = n_roots(cell);
+    double range[RANGE_SIZE];
     tracer->n_cells++;
     if ((size_t)cell->depth > tracer->n_deepest)
         tracer->n_deepest = (size_t)cell->depth;
-    if (net_sign(&cell->f)) {
+    find_terms(cells, cell->at);
+    if (!roots &&
+        (field_quick_sign(&cell->at->terms, line) || field_is_never_met(&cell->at->terms, line)))
+        return;
+    field_line_range(&cell->at->terms, line, range);
+    if (line_range_sign(range, cells->noise)) {
         if (roots)
             join_nearest(cells, cell);
         return;
     }
-    int by_u = net_slope_sign(&cell->f, 0), by_v = net_slope_sign(&cell->f, 1);
+    if (field_is_never_met(&cell->at->terms, line))
+        return;
+    int by_u = range_slope_sign(range, 0, cells->noise);
+    int by_v = range_slope_sign(range, 1, cells->noise);
+    bool is_overflow = !isfinite(range[0]) || !isfinite(cells->noise);
     if (by_v && (!by_u || cell->side[3].n + cell->side[1].n >= cell->side[0].n + cell->side[2].n))
         trace_graph(cells, cell, 0, by_v);
     else if (by_u)
         trace_graph(cells, cell, 1, by_u);
-    else if (cell->depth == MOST_DEPTH || ++cells->n_cells > MOST_CELLS || cells->overflows)
+    else if (is_overflow || cell->depth == MOST_DEPTH || ++cells->n_cells > MOST_CELLS ||
+             cells->overflows)
         mark(cells, cell);
-    else
+    else if (cell->depth > 0 || !mark_flat(cells))
         split(cells, cell);
-}
-
-/* F's net of a line, with the noise added. */
-static void combine(const struct field_nets *nets, const struct field_line *line, struct net *f)
-{
-    double noise = LINE_NOISE * field_bound(nets, line);
-    size_t size = net_size(f);
-    for (size_t k = 0; k < size; k++)
-        f->c[k] = noise + line->w[0] * nets->g[0].c[k];
-    for (int g = 1; g < nets->n_terms; g++)
-        for (size_t k = 0; k < size; k++)
-            f->c[k] += line->w[g] * nets->g[g].c[k];
-}
-
-/* True if no ray meets the line anywhere on the patch. */
-static bool is_never_met(const struct field_nets *nets, const struct field_line *line)
-{
-    if (nets->facing == 0)
-        return false;
-    size_t size = net_size(&nets->g[0]);
-    for (size_t k = 0; k < size; k++) {
-        double sum = 0;
-        for (int g = 0; g < nets->n_terms; g++)
-            sum += line->r[g] * nets->g[g].c[k];
-        if (!(sum * nets->facing < 0))
-            return false;
-    }
-    return true;
-}
-
-/* Marks a patch that the line covers: F does not differ from 0. */
-static bool is_flat(const struct field_nets *nets, const struct field_line *line,
-                    const struct net *f)
-{
-    double noise = LINE_NOISE * field_bound(nets, line);
-    for (size_t k = 0; k < net_size(f); k++)
-        if (fabs(f->c[k] - noise) > 0.5 * noise)
-            return false;
-    return true;
-}
-
-static bool is_finite(const struct net *f)
-{
-    double sum = 0;
-    for (size_t k = 0; k < net_size(f); k++)
-        sum += fabs(f->c[k]);
-    return isfinite(sum);
 }
 
 /* The first root of a line in a side's list, which is in the order of lines. */
@@ -368,70 +470,49 @@ static struct cell_side side_of(struct cells *cells, const struct root_list *lis
     return (struct cell_side){roots, roots ? (int)(last - first) : 0};
 }
 
-static void trace_line(struct cells *cells, const struct field_nets *nets,
-                       const struct region *region, struct net f)
+static void trace_line(struct cells *cells, const struct region *region, struct trace_square *whole)
 {
-    struct tracer *tracer = cells->march.tracer;
     uint32_t line = cells->march.line;
-    const struct field_line *at = &tracer->work.set->line[line];
-    struct cell cell = {.f = f, .square = {{0, 0}, 1}};
+    struct cell cell = {.at = whole, .square = {{0, 0}, 1}};
     cells->n_pool = cells->n_cells = 0;
     cells->overflows = false;
     for (int k = 0; k < 4; k++) {
         cell.sign[k] = line_sign(&region->sign[k], line);
         cell.side[k] = side_of(cells, &region->side[k], line);
     }
-    combine(nets, at, &f);
-    if (!is_finite(&f))
-        return; /* light or eye are so far away that numbers overflow */
-    if (is_flat(nets, at, &f)) {
-        const double middle[2] = {0.5, 0.5};
-        struct traced_point point = march_point(&cells->march, middle);
-        if (!isnan(point.residual))
-            march_mark(tracer, MARK_FLAT, line, tracer->work.next_node++, &point);
-        return;
-    }
-    if (n_roots(&cell) == 0 && net_sign(&f))
-        return;
-    if (!is_never_met(nets, at))
-        trace_cell(cells, &cell);
+    cells->noise = patch_field_noise(cells->march.on, &cells->march.tracer->work.set->line[line]);
+    trace_cell(cells, &cell);
 }
 
 void trace_patch(struct tracer *tracer, const struct limit_patch *patch,
                  const struct patch_place *place, const struct region *region)
 {
     const struct line_set *set = tracer->work.set;
-    struct net_room *room = &tracer->work.room;
     struct cell_root pool[MOST_ROOTS];
     struct bezier bezier;
-    struct bezier_nets surface;
-    struct bezier_box surface_box;
-    size_t mark = room->used;
+    int n_squares = 0;
     bezier_of_patch(&bezier, tracer->work.tables, patch);
-    bezier_make_nets(&bezier, room, &surface);
-    bezier_box_of(&surface, &surface_box);
+    struct cells cells = {.march = {.tracer = tracer, .place = place},
+                          .n_squares = &n_squares,
+                          .first_mark = tracer->out.n_marks,
+                          .pool = pool};
+    struct trace_square *whole = take_squares(&cells, 1);
+    piece_of_bezier(&bezier, &whole->piece);
     for (uint32_t f = 0; f < set->n_fields; f++) {
-        size_t before = room->used;
-        struct cells cells = {.march = {tracer, &bezier, place, &set->field[f], 0}, .pool = pool};
-        struct field_nets nets;
-        struct net net = {0};
-        struct field_box box;
-        field_make_box(&set->field[f], bezier.origin, &surface_box, &box);
+        struct patch_field on;
+        patch_field_init(&on, &set->field[f], &bezier);
+        cells.march.on = &on;
+        cells.field = (int)f;
+        find_terms(&cells, whole);
         for (uint32_t i = set->first_line[f]; i < set->first_line[f + 1]; i++) {
             if (*tracer->cancelled || tracer->work.failed)
                 break;
-            if (field_box_sign(&box, &set->line[i]) && !has_roots(region, i))
+            if (field_quick_sign(&whole->terms, &set->line[i]) && !has_roots(region, i))
                 continue;
-            if (!net.c) { /* the first line that needs them */
-                field_make_nets(&set->field[f], room, bezier.origin, &surface, &nets);
-                net = net_take(room, nets.g[0].m, nets.g[0].n);
-            }
             cells.march.line = i;
-            trace_line(&cells, &nets, region, net);
+            trace_line(&cells, region, whole);
         }
-        room->used = before;
     }
-    room->used = mark;
 }
 
 /* The surface's point at a crossing on a side of a region; the side's place in the node is that of a square at local

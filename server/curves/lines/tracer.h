@@ -45,6 +45,7 @@ size_t traced_bytes(const struct traced *traced);
 
 struct tracer {
     struct sides_work work;
+    struct trace_square *squares; /* trace_squares_take() */
     double tolerance;   /* greatest distance between a polyline and its line, world units */
     size_t most_points; /* room for points; with more, is_over and work.failed are set */
     bool is_over;
