@@ -69,7 +69,8 @@ void measure(report *report, table *table, const std::string &path, const std::s
     surface_lines_result result = {};
     surface_lines *traced = nullptr;
     samples ms;
-    for (int run = 0; run <= report->given().runs; run++) {
+    for (int run = 0; run < report->given().runs;
+         run++) { /* none to warm up: a run takes seconds */
         if (traced)
             computation_destroy(surface_lines_computation(traced));
         double taken = time_ms([&] {
@@ -79,8 +80,7 @@ void measure(report *report, table *table, const std::string &path, const std::s
             if (!traced || !computation_run(surface_lines_computation(traced), &error))
                 throw std::runtime_error(error.text);
         });
-        if (run > 0)
-            ms.add(taken);
+        ms.add(taken);
     }
     result = surface_lines_get(traced);
     std::string key = model_name(path) + " " + kind + " ";

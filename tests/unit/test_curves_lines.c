@@ -105,9 +105,66 @@ static void lines_on_a_parabolic_cylinder_are_where_they_belong(void **state)
     free(set);
 }
 
-/* The sign of place - wanted on a grid over a patch, and from that the number of connected components of the line: cells
- * with different signs at their corners, joined across shared edges whose ends differ. */
-enum { GRID = 300 };
+/* The place on the light over a patch, as on a grid of GRID x GRID cells. It is evaluated at every STEP-th node, and at all nodes of
+ * those blocks of STEP x STEP cells where a line may be, because the place changes by less between the block's corners than
+ * the corners differ from the line. */
+enum { GRID = 2000, STEP = 8, BLOCKS = GRID / STEP, ROW = GRID + 1 };
+
+struct place_grid {
+    double place[ROW * ROW];
+    bool is_fine[BLOCKS * BLOCKS];
+};
+
+static void place_node(const struct limit_tables *tables, const struct line_map *map, int i, int j,
+                       struct place_grid *grid)
+{
+    struct limit_point at;
+    double *place = &grid->place[j * ROW + i];
+    if (isnan(*place)) {
+        limit_evaluate(tables, BEZIER_FACE, (double)i / GRID, (double)j / GRID, &at);
+        *place = line_position_at(map, at.s, at.n).s;
+    }
+}
+
+/* Twice the largest difference of neighbouring corners, of the block and of those around it. */
+static double change_about(const struct place_grid *grid, int x, int y)
+{
+    double most = 0;
+    for (int j = y > 0 ? y - 1 : y; j <= y + 1 && j < BLOCKS; j++) {
+        for (int i = x > 0 ? x - 1 : x; i <= x + 1 && i < BLOCKS; i++) {
+            const double *at = &grid->place[j * STEP * ROW + i * STEP];
+            const double corner[4] = {at[0], at[STEP], at[STEP * ROW + STEP], at[STEP * ROW]};
+            for (int k = 0; k < 4; k++) {
+                double d = corner[(k + 1) & 3] - corner[k];
+                most = fmax(most, fabs(d - round(d)));
+            }
+        }
+    }
+    return 2 * most;
+}
+
+static void fill_grid(const struct limit_tables *tables, const struct line_map *map,
+                      const struct line_set *set, struct place_grid *grid)
+{
+    for (int k = 0; k < ROW * ROW; k++)
+        grid->place[k] = NAN;
+    for (int j = 0; j <= GRID; j += STEP)
+        for (int i = 0; i <= GRID; i += STEP)
+            place_node(tables, map, i, j, grid);
+    for (int b = 0; b < BLOCKS * BLOCKS; b++) {
+        int x = b % BLOCKS, y = b / BLOCKS;
+        double change = change_about(grid, x, y);
+        grid->is_fine[b] = false;
+        for (uint32_t line = 0; line < set->n_lines; line++) {
+            double d = grid->place[y * STEP * ROW + x * STEP] - set->line[line].place;
+            grid->is_fine[b] |= fabs(d - round(d)) <= change;
+        }
+    }
+    for (int b = 0; b < BLOCKS * BLOCKS; b++)
+        for (int k = 0; grid->is_fine[b] && k < (STEP + 1) * (STEP + 1); k++)
+            place_node(tables, map, b % BLOCKS * STEP + k % (STEP + 1),
+                       b / BLOCKS * STEP + k / (STEP + 1), grid);
+}
 
 static uint32_t root_of(uint32_t *parent, uint32_t i)
 {
@@ -116,7 +173,7 @@ static uint32_t root_of(uint32_t *parent, uint32_t i)
     return i;
 }
 
-/* Places of closed lights are compared the shorter way around. */
+/* Places of closed lights are compared the shorter way around. Places that are not known are far from all lines. */
 static bool crosses(double a, double b, double wanted)
 {
     a -= wanted + round(a - wanted);
@@ -124,28 +181,53 @@ static bool crosses(double a, double b, double wanted)
     return (a > 0) != (b > 0) && fabs(a - b) < 0.5;
 }
 
-static unsigned count_on_grid(const double *place, double wanted)
+/* The cells of a grid that a line crosses, and which of them are connected. */
+struct crossed_cells {
+    uint32_t parent[GRID * GRID];
+    bool crossed[GRID * GRID];
+};
+
+/* Joins a cell with the one before it along x or y, if the line crosses their common edge. */
+static void join_cells(const struct place_grid *grid, double wanted, struct crossed_cells *cells,
+                       int i, int j)
 {
-    static uint32_t parent[GRID * GRID];
-    static bool crossed[GRID * GRID];
-    const int row = GRID + 1;
+    const double *at = grid->place + j * ROW + i;
+    uint32_t self = (uint32_t)(j * GRID + i);
+    if (!cells->crossed[self])
+        return;
+    if (i > 0 && cells->crossed[self - 1] && crosses(at[0], at[ROW], wanted))
+        cells->parent[root_of(cells->parent, self)] = root_of(cells->parent, self - 1);
+    if (j > 0 && cells->crossed[self - GRID] && crosses(at[0], at[1], wanted))
+        cells->parent[root_of(cells->parent, self)] = root_of(cells->parent, self - GRID);
+}
+
+/* The number of connected components of a line: cells with different signs at their corners, joined across shared edges whose
+ * ends differ. */
+static unsigned count_on_grid(const struct place_grid *grid, double wanted)
+{
+    static struct crossed_cells cells;
     unsigned n = 0;
-    for (int j = 0; j < GRID; j++) {
-        for (int i = 0; i < GRID; i++) {
+    memset(cells.crossed, 0, sizeof cells.crossed);
+    for (int pass = 0; pass < 3; pass++) {
+        for (int k = 0; k < GRID * GRID; k++) {
+            int b = k / (STEP * STEP), i = b % BLOCKS * STEP + k % STEP;
+            int j = b / BLOCKS * STEP + k / STEP % STEP;
+            const double *at = grid->place + j * ROW + i;
             uint32_t self = (uint32_t)(j * GRID + i);
-            const double *at = place + j * row + i;
-            bool left = crosses(at[0], at[row], wanted), below = crosses(at[0], at[1], wanted);
-            crossed[self] = left || below || crosses(at[1], at[row + 1], wanted) ||
-                            crosses(at[row], at[row + 1], wanted);
-            parent[self] = self;
-            if (i > 0 && left)
-                parent[root_of(parent, self)] = root_of(parent, self - 1);
-            if (j > 0 && below)
-                parent[root_of(parent, self)] = root_of(parent, self - GRID);
+            if (!grid->is_fine[b]) {
+                k += STEP * STEP - 1;
+            } else if (pass == 0) {
+                cells.parent[self] = self;
+                cells.crossed[self] =
+                    crosses(at[0], at[1], wanted) || crosses(at[ROW], at[ROW + 1], wanted) ||
+                    crosses(at[0], at[ROW], wanted) || crosses(at[1], at[ROW + 1], wanted);
+            } else if (pass == 1) {
+                join_cells(grid, wanted, &cells, i, j);
+            } else {
+                n += cells.crossed[self] && cells.parent[self] == self;
+            }
         }
     }
-    for (uint32_t k = 0; k < GRID * GRID; k++)
-        n += crossed[k] && parent[k] == k;
     return n;
 }
 
@@ -153,7 +235,7 @@ static unsigned count_on_grid(const double *place, double wanted)
 static void the_grid_shows_as_many_curves(void **state)
 {
     (void)state;
-    static double place[(GRID + 1) * (GRID + 1)];
+    static struct place_grid grid;
     unsigned curves = 0, closed = 0;
     random_state = 3;
     for (int round = 0; round < 6; round++) {
@@ -179,12 +261,7 @@ static void the_grid_shows_as_many_curves(void **state)
             double at = lines.family == LINES_ISOPHOTE ? 0.03 + 0.02 * i : 0.29 + 0.033 * i;
             assert_int_equal(line_set_add(set, &map, 0, at), LINE_ADDED);
         }
-        for (int k = 0; k < (GRID + 1) * (GRID + 1); k++) {
-            struct limit_point at;
-            limit_evaluate(&tables, BEZIER_FACE, (double)(k % (GRID + 1)) / GRID,
-                           (double)(k / (GRID + 1)) / GRID, &at);
-            place[k] = line_position_at(&map, at.s, at.n).s;
-        }
+        fill_grid(&tables, &map, set, &grid);
         struct surface_lines *traced = trace_set(&tables, set, 1e-3);
         struct surface_lines_result result = surface_lines_get(traced);
         assert_int_equal(result.n_marks, 0);
@@ -194,7 +271,7 @@ static void the_grid_shows_as_many_curves(void **state)
                 n += result.curves->curve[c].line == i;
                 closed += result.curves->curve[c].line == i && result.curves->curve[c].closed;
             }
-            assert_int_equal(n, count_on_grid(place, set->line[i].place));
+            assert_int_equal(n, count_on_grid(&grid, set->line[i].place));
             curves += n;
         }
         computation_destroy(surface_lines_computation(traced));

@@ -50,34 +50,37 @@ static struct blends blends_at(double t)
     };
 }
 
-/* Sums points of the patch with the products of the weights along u and v. */
-static void weigh(const struct bezier *bezier, const double *u, const double *v, double out[3])
+/* Sums the patch's points along v with each of three weights: by weights, then coordinates, then rows. */
+static void weigh_rows(const struct bezier *bezier, const struct blends *v, double out[3][3][4])
 {
     for (int d = 0; d < 3; d++) {
-        double sum = 0;
         for (int i = 0; i < 4; i++) {
             const double *p = bezier->p[d][i];
-            sum += u[i] * (v[0] * p[0] + v[1] * p[1] + v[2] * p[2] + v[3] * p[3]);
+            const double *w[3] = {v->value, v->first, v->second};
+            for (int k = 0; k < 3; k++)
+                out[k][d][i] = w[k][0] * p[0] + w[k][1] * p[1] + w[k][2] * p[2] + w[k][3] * p[3];
         }
-        out[d] = sum;
     }
 }
 
-static struct vec weighed(const struct bezier *bezier, const double *u, const double *v)
+static struct vec weighed(double rows[3][4], const double *u)
 {
     double out[3];
-    weigh(bezier, u, v, out);
+    for (int d = 0; d < 3; d++)
+        out[d] = u[0] * rows[d][0] + u[1] * rows[d][1] + u[2] * rows[d][2] + u[3] * rows[d][3];
     return (struct vec){out[0], out[1], out[2]};
 }
 
 void bezier_jet_at(const struct bezier *bezier, double u, double v, struct bezier_jet *out)
 {
     struct blends x = blends_at(u), y = blends_at(v);
-    struct vec su = weighed(bezier, x.first, y.value), sv = weighed(bezier, x.value, y.first);
-    struct vec suu = weighed(bezier, x.second, y.value), svv = weighed(bezier, x.value, y.second);
-    struct vec suv = weighed(bezier, x.first, y.first);
+    double rows[3][3][4];
+    weigh_rows(bezier, &y, rows);
+    struct vec su = weighed(rows[0], x.first), sv = weighed(rows[1], x.value);
+    struct vec suu = weighed(rows[0], x.second), svv = weighed(rows[2], x.value);
+    struct vec suv = weighed(rows[1], x.first);
     *out = (struct bezier_jet){
-        .s = {weighed(bezier, x.value, y.value), su, sv},
+        .s = {weighed(rows[0], x.value), su, sv},
         .n = {vec_cross(su, sv), vec_add(vec_cross(suu, sv), vec_cross(su, suv)),
               vec_add(vec_cross(suv, sv), vec_cross(su, svv))},
     };
