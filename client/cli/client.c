@@ -309,7 +309,7 @@ void client_print_warnings(struct client *client, const char *lines)
 
 void client_json_schedule(struct json *json, const struct sheen_request *request)
 {
-    json_string(json, "class", value_class_name(request->request_class));
+    json_text(json, "class", value_class_name(request->request_class));
     if (request->deadline_ms)
         json_uint(json, "deadline_ms", request->deadline_ms);
 }
@@ -317,11 +317,11 @@ void client_json_schedule(struct json *json, const struct sheen_request *request
 void client_json_origin(struct json *json, const struct client *client,
                         const struct options *options, const struct sheen_frame *frame)
 {
-    json_string(json, "device", frame->device);
-    json_string(json, "driver", frame->driver);
+    json_text(json, "device", frame->device);
+    json_text(json, "driver", frame->driver);
     json_bool(json, "software", frame->software);
     json_uint(json, "threads", frame->threads);
-    json_string(json, "server", frame->server);
+    json_text(json, "server", frame->server);
     json_hex(json, "model_sha256", client->model_id, SHEEN_ID_BYTES);
     json_bool(json, "weld", options->weld);
 }

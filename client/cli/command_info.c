@@ -26,9 +26,9 @@ static void print_findings(struct json *json, const struct sheen_model_info *inf
     for (uint32_t i = 0; i < info->n_findings; i++) {
         const struct sheen_finding *finding = &info->findings[i];
         json_object_begin(json, NULL);
-        json_string(json, "kind",
-                    (size_t)finding->kind < sizeof(KINDS) / sizeof(*KINDS) ? KINDS[finding->kind]
-                                                                           : "other");
+        json_text(json, "kind",
+                  (size_t)finding->kind < sizeof(KINDS) / sizeof(*KINDS) ? KINDS[finding->kind]
+                                                                         : "other");
         json_uint(json, "count", finding->count);
         if (finding->line)
             json_uint(json, "line", finding->line);
@@ -74,7 +74,7 @@ static void print_json(struct json *json, const struct sheen_model_info *info,
     };
     json_object_begin(json, NULL);
     json_hex(json, "sha256", info->id, SHEEN_ID_BYTES);
-    json_string(json, "name", info->name);
+    json_text(json, "name", info->name);
     for (size_t i = 0; i < sizeof(numbers) / sizeof(*numbers); i++)
         json_uint(json, numbers[i].key, numbers[i].value);
     json_array_begin(json, "extraordinary");
@@ -87,8 +87,8 @@ static void print_json(struct json *json, const struct sheen_model_info *info,
     json_array_end(json);
     json_vec3(json, "box_min", info->box_min);
     json_vec3(json, "box_max", info->box_max);
-    json_string(json, "device", server->device);
-    json_string(json, "driver", server->driver);
+    json_text(json, "device", server->device);
+    json_text(json, "driver", server->driver);
     json_bool(json, "software", server->software);
     json_lines(json, "warnings", info->warnings);
     print_findings(json, info);

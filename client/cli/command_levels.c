@@ -188,11 +188,11 @@ static void print_json(struct json *json, const struct options *options,
                        const struct sheen_model_info *info, const struct figure *figure)
 {
     json_object_begin(json, NULL);
-    json_string(json, "file", options->output);
+    json_text(json, "file", options->output);
     json_uint(json, "width", figure->canvas.width_px);
     json_uint(json, "height", figure->canvas.height_px);
     client_json_origin(json, client, options, exact);
-    json_string(json, "model", options->model);
+    json_text(json, "model", options->model);
     json_array_begin(json, "levels");
     for (int row = 0; row < N_LEVELS; row++) {
         json_object_begin(json, NULL);

@@ -31,10 +31,10 @@ static void json_rows(struct json *json, const char *name, const struct text_row
     json_array_begin(json, name);
     for (; rows->name; rows++) {
         json_object_begin(json, NULL);
-        json_string(json, "name", rows->name);
-        json_string(json, "meaning", rows->meaning);
+        json_text(json, "name", rows->name);
+        json_text(json, "meaning", rows->meaning);
         text_row_example(rows, text);
-        json_string(json, example, text);
+        json_text(json, example, text);
         json_object_end(json);
     }
     json_array_end(json);

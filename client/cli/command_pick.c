@@ -118,7 +118,7 @@ static void print_json(struct json *json, const struct options *options,
     json_uint(json, "width", options->request.width_px);
     json_uint(json, "height", options->request.height_px);
     client_json_origin(json, client, options, &picks->frame);
-    json_string(json, "model", options->model);
+    json_text(json, "model", options->model);
     scene_json(json, &picks->request, &picks->frame);
     json_object_end(json);
 }

@@ -37,20 +37,20 @@ static void print_json(struct json *json, const struct options *options,
                        const struct sheen_model_info *info)
 {
     json_object_begin(json, NULL);
-    json_string(json, "file", options->output);
+    json_text(json, "file", options->output);
     json_uint(json, "file_bytes", frame->data_bytes);
     json_uint(json, "width", frame->width_px);
     json_uint(json, "height", frame->height_px);
     client_json_origin(json, client, options, frame);
-    json_string(json, "address", options->server ? options->server : "private");
-    json_string(json, "model", options->model);
+    json_text(json, "address", options->server ? options->server : "private");
+    json_text(json, "model", options->model);
     if (info->faces)
         json_uint(json, "faces", info->faces);
     if (options->request.jpeg_quality)
         json_uint(json, "jpeg_quality", options->request.jpeg_quality);
     if (options->request.format == SHEEN_FORMAT_JPEG)
-        json_string(json, "jpeg_subsampling",
-                    value_subsampling_name(options->request.jpeg_subsampling));
+        json_text(json, "jpeg_subsampling",
+                  value_subsampling_name(options->request.jpeg_subsampling));
     json_bool(json, "blank", frame->blank);
     client_json_times(json, &frame->times);
     client_json_schedule(json, &options->request);

@@ -38,9 +38,9 @@ static void json_latency(struct json *json, const char *key, const struct sheen_
 static void print_json(struct json *json, const struct sheen_stats *stats)
 {
     json_object_begin(json, NULL);
-    json_string(json, "server", stats->server);
-    json_string(json, "device", stats->device);
-    json_string(json, "driver", stats->driver);
+    json_text(json, "server", stats->server);
+    json_text(json, "device", stats->device);
+    json_text(json, "driver", stats->driver);
     json_bool(json, "software", stats->software);
     json_uint(json, "threads", stats->threads);
     json_uint(json, "uptime_us", stats->uptime_us);

@@ -16,7 +16,7 @@ static void json_is_json(void **state)
     struct json json = {.out = open_memstream(&text, &size)};
     const double v[3] = {0.1, NAN, -INFINITY};
     json_object_begin(&json, NULL);
-    json_string(&json, "name", "a\"b\\c\nd\x01\x7f\xc3\xbc\xff\xc3");
+    json_text(&json, "name", "a\"b\\c\nd\x01\x7f\xc3\xbc\xff\xc3");
     json_uint(&json, "n", UINT64_MAX);
     json_bool(&json, "yes", true);
     json_vec3(&json, "v", v);

@@ -144,7 +144,7 @@ static void json_curve(struct json *json, const struct traced *traced, uint32_t 
 static void json_mark(struct json *json, const struct sheen_curve_mark *mark)
 {
     json_object_begin(json, NULL);
-    json_string(json, "kind", mark->kind == SHEEN_CURVE_FLAT ? "flat" : "singular");
+    json_text(json, "kind", mark->kind == SHEEN_CURVE_FLAT ? "flat" : "singular");
     json_uint(json, "light", mark->light + 1);
     json_uint(json, "line", mark->line + 1);
     json_vec3(json, "position", mark->position);
@@ -166,13 +166,13 @@ static void print_json(struct json *json, const struct options *options,
         length += curves->curves[i].length;
     }
     json_object_begin(json, NULL);
-    json_string(json, "schema", SCHEMA);
-    json_string(json, "model", options->model);
+    json_text(json, "schema", SCHEMA);
+    json_text(json, "model", options->model);
     json_hex(json, "model_sha256", client->model_id, SHEEN_ID_BYTES);
     json_bool(json, "weld", options->weld);
-    json_string(json, "server", curves->server);
+    json_text(json, "server", curves->server);
     json_uint(json, "total_us", curves->total_us);
-    json_string(json, "unit", "the file's own");
+    json_text(json, "unit", "the file's own");
     json_double(json, "diagonal", curves->diagonal);
     json_double(json, "tolerance", curves->tolerance);
     json_bool(json, "silhouettes", options->curve_options.silhouettes);

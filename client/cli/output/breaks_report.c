@@ -102,7 +102,7 @@ static void json_pair(struct json *json, const char *key, const uint32_t pair[2]
 static void json_edge(struct json *json, const struct sheen_break_edge *edge)
 {
     json_object_begin(json, NULL);
-    json_string(json, "kind", kind_name(edge->kind));
+    json_text(json, "kind", kind_name(edge->kind));
     json_pair(json, "faces", edge->faces);
     json_pair(json, "edges", edge->edges);
     json_bool(json, "dart", edge->has_dart);
@@ -111,7 +111,7 @@ static void json_edge(struct json *json, const struct sheen_break_edge *edge)
     json_array_begin(json, "over");
     for (size_t i = 0; i < N_LIMITED; i++)
         if (edge->over >> LIMITED[i].measure & 1)
-            json_string(json, NULL, MEASURES[LIMITED[i].measure].key);
+            json_text(json, NULL, MEASURES[LIMITED[i].measure].key);
     json_array_end(json);
     for (int i = 0; i < SHEEN_N_BREAK_MEASURES; i++)
         json_worst(json, MEASURES[i].key, &edge->worst[i]);
@@ -177,13 +177,13 @@ void breaks_json(struct json *json, const struct options *options,
                   {"joints", breaks->n_joints},    {"borders", breaks->n_borders},
                   {"vertices", breaks->n_vertices}};
     json_object_begin(json, NULL);
-    json_string(json, "schema", SCHEMA);
-    json_string(json, "model", options->model);
+    json_text(json, "schema", SCHEMA);
+    json_text(json, "model", options->model);
     json_hex(json, "model_sha256", model_id, SHEEN_ID_BYTES);
     json_bool(json, "weld", options->weld);
-    json_string(json, "server", breaks->server);
+    json_text(json, "server", breaks->server);
     json_uint(json, "total_us", breaks->total_us);
-    json_string(json, "unit", "the file's own");
+    json_text(json, "unit", "the file's own");
     json_double(json, "diagonal", breaks->diagonal);
     json_bool(json, "within", breaks->n_out == 0);
     json_limits(json, options, breaks);

@@ -69,7 +69,7 @@ static void write_file(struct json *json, const char *key, const struct compared
     if (!pair->files[k])
         return;
     json_object_begin(json, key);
-    json_string(json, "file", pair->files[k]);
+    json_text(json, "file", pair->files[k]);
     if (comparison_is_made(pair))
         json_hex(json, "sha256", pair->ids[k], SHEEN_ID_BYTES);
     json_object_end(json);
@@ -109,7 +109,7 @@ static void write_comparison(struct json *json, const struct compared_pair *pair
     const struct sheen_comparison *comparison = &pair->comparison;
     json_bool(json, "within_limits", pair->verdict == COMPARISON_SAME);
     json_bool(json, "identical", comparison_is_identical(pair));
-    json_string(json, "unit", pair->has_unit ? "m" : "the file's own");
+    json_text(json, "unit", pair->has_unit ? "m" : "the file's own");
     json_double(json, "diagonal", comparison->diagonal);
     json_object_begin(json, "floor");
     json_double(json, "distance", comparison->distance_floor);
@@ -127,16 +127,16 @@ static void write_comparison(struct json *json, const struct compared_pair *pair
     scene_json_lines(json, &comparison->camera, &comparison->lines, comparison->lights,
                      comparison->n_lights);
     json_uint(json, "total_us", comparison->total_us);
-    json_string(json, "server", comparison->server);
+    json_text(json, "server", comparison->server);
 }
 
 static void write_failure(struct json *json, const struct compared_pair *pair)
 {
     json_object_begin(json, "error");
     if (pair->failed_side >= 0)
-        json_string(json, "side", pair->failed_side ? "new" : "old");
+        json_text(json, "side", pair->failed_side ? "new" : "old");
     json_uint(json, "code", (uint64_t)sheen_status_exit_code(pair->status));
-    json_string(json, "text", pair->failure);
+    json_text(json, "text", pair->failure);
     json_object_end(json);
 }
 
@@ -147,13 +147,13 @@ void comparison_write_json(struct json *json, const struct compared_pair *pairs,
                           : are_identical(pairs, n)                         ? "same"
                                                                             : "within_limits";
     json_object_begin(json, NULL);
-    json_string(json, "schema", SCHEMA);
-    json_string(json, "verdict", verdict);
+    json_text(json, "schema", SCHEMA);
+    json_text(json, "verdict", verdict);
     json_array_begin(json, "pairs");
     for (size_t i = 0; i < n; i++) {
         json_object_begin(json, NULL);
-        json_string(json, "name", pairs[i].name);
-        json_string(json, "verdict", verdict_of(&pairs[i]));
+        json_text(json, "name", pairs[i].name);
+        json_text(json, "verdict", verdict_of(&pairs[i]));
         write_file(json, "old", &pairs[i], 0);
         write_file(json, "new", &pairs[i], 1);
         if (pairs[i].verdict == COMPARISON_FAILED)

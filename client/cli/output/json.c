@@ -79,7 +79,7 @@ void json_array_end(struct json *json)
     end_group(json, ']');
 }
 
-void json_string(struct json *json, const char *key, const char *value)
+void json_text(struct json *json, const char *key, const char *value)
 {
     begin_value(json, key);
     write_string(json->out, value, strlen(value));

@@ -1,7 +1,7 @@
 /* Writes one JSON value: objects and arrays in order, indented by two blanks, strings escaped.
  *
  * `key` is NULL inside arrays and for the outermost value. NaN and infinity become null. The stream
- * belongs to the caller.
+ * belongs to the caller. No function has a name of jansson, which libsheen uses: the linker would take one for the other.
  * Thread: one at a time. */
 #ifndef SHEEN_CLIENT_JSON_H
 #define SHEEN_CLIENT_JSON_H
@@ -21,7 +21,7 @@ void json_object_begin(struct json *json, const char *key);
 void json_object_end(struct json *json);
 void json_array_begin(struct json *json, const char *key);
 void json_array_end(struct json *json);
-void json_string(struct json *json, const char *key, const char *value);
+void json_text(struct json *json, const char *key, const char *value);
 void json_uint(struct json *json, const char *key, uint64_t value);
 /* In the fewest digits that give the same number back. */
 void json_double(struct json *json, const char *key, double value);

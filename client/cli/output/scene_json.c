@@ -14,7 +14,7 @@ static void json_colour(struct json *json, const char *key, const float colour[4
     for (int k = 0; k < 4; k++)
         byte[k] = (unsigned)lroundf(255 * colour[k]);
     snprintf(text, sizeof(text), "#%02x%02x%02x%02x", byte[0], byte[1], byte[2], byte[3]);
-    json_string(json, key, text);
+    json_text(json, key, text);
 }
 
 static void json_camera(struct json *json, const struct sheen_camera *camera)
@@ -37,7 +37,7 @@ static void json_up(struct json *json, const struct sheen_frame *frame)
     if (frame->up_source == SHEEN_UP_UNKNOWN)
         return;
     json_vec3(json, "up", frame->up);
-    json_string(json, "up_source", sources[frame->up_source]);
+    json_text(json, "up_source", sources[frame->up_source]);
 }
 
 /* Writes the zoom, which has changed eye, target and field of view. */
@@ -55,11 +55,11 @@ static void json_zoom(struct json *json, const struct sheen_camera *camera)
 static void json_family(struct json *json, const struct sheen_lines *lines)
 {
     static const char *const eyes[] = {"camera", "point", "direction"};
-    json_string(json, "lines", text_line_family(lines->family));
+    json_text(json, "lines", text_line_family(lines->family));
     if (lines->has_direction)
         json_vec3(json, "lines_direction", lines->direction);
     json_object_begin(json, "line_eye");
-    json_string(json, "kind", eyes[lines->eye_kind]);
+    json_text(json, "kind", eyes[lines->eye_kind]);
     if (lines->eye_kind != SHEEN_LINE_EYE_CAMERA)
         json_vec3(json, eyes[lines->eye_kind], lines->eye);
     json_object_end(json);
@@ -68,7 +68,7 @@ static void json_family(struct json *json, const struct sheen_lines *lines)
 static void json_pattern(struct json *json, const struct sheen_pattern *pattern)
 {
     json_object_begin(json, "pattern");
-    json_string(json, "kind", text_pattern_kind(pattern->kind));
+    json_text(json, "kind", text_pattern_kind(pattern->kind));
     json_double(json, "count", pattern->count);
     if (pattern->period > 0)
         json_double(json, "period", pattern->period);
@@ -94,7 +94,7 @@ static void json_pattern(struct json *json, const struct sheen_pattern *pattern)
 static void json_light(struct json *json, const char *name, const struct sheen_light *light)
 {
     json_object_begin(json, name);
-    json_string(json, "kind", text_light_kind(light->kind));
+    json_text(json, "kind", text_light_kind(light->kind));
     json_bool(json, "one_sided", light->one_sided);
     json_vec3(json, "center", light->centre);
     json_vec3(json, "u", light->u);
@@ -152,11 +152,11 @@ static void json_extreme(struct json *json, const char *key, const struct sheen_
 static void json_show(struct json *json, const struct sheen_show *show,
                       const struct sheen_frame *frame)
 {
-    json_string(json, "show", text_show_kind(show->kind));
+    json_text(json, "show", text_show_kind(show->kind));
     if (show->kind == SHEEN_SHOW_DRAFT)
         json_vec3(json, "show_direction", show->direction);
     if (show->kind != SHEEN_SHOW_LINES)
-        json_string(json, "legend", show->without_legend ? "off" : "on");
+        json_text(json, "legend", show->without_legend ? "off" : "on");
     if (frame->show_range > 0) {
         json_double(json, "show_range", frame->show_range);
         json_extreme(json, "show_least", &frame->show_least);
@@ -169,7 +169,7 @@ static void json_planes(struct json *json, uint32_t planes)
     json_array_begin(json, "aov");
     for (uint32_t plane = SHEEN_PLANE_COLOUR << 1; plane < 1u << SHEEN_N_PLANES; plane <<= 1)
         if (planes & plane)
-            json_string(json, NULL, value_plane_name(plane));
+            json_text(json, NULL, value_plane_name(plane));
     json_array_end(json);
 }
 
@@ -180,7 +180,7 @@ void scene_json(struct json *json, const struct sheen_request *request,
     json_camera(json, &frame->camera);
     json_up(json, frame);
     if (value_view_name(request->camera.view))
-        json_string(json, "view", value_view_name(request->camera.view));
+        json_text(json, "view", value_view_name(request->camera.view));
     if (request->camera.zoom > 0)
         json_zoom(json, &request->camera);
     json_family(json, &frame->lines);
@@ -191,9 +191,9 @@ void scene_json(struct json *json, const struct sheen_request *request,
         json_colour(json, "empty", frame->empty);
         json_colour(json, "base", frame->base);
     }
-    json_string(json, "antialias", request->aliased || request->unfiltered ? "off" : "exact");
-    json_string(json, "filter", request->unfiltered ? "off" : "exact");
-    json_string(json, "surface", surfaces[request->surface]);
+    json_text(json, "antialias", request->aliased || request->unfiltered ? "off" : "exact");
+    json_text(json, "filter", request->unfiltered ? "off" : "exact");
+    json_text(json, "surface", surfaces[request->surface]);
     if (request->surface != SHEEN_SURFACE_EXACT)
         json_uint(json, "surface_level", request->surface_level);
     json_show(json, &request->show, frame);

@@ -62,7 +62,7 @@ static void json_file(struct json *json, const struct options *options, uint32_t
 {
     char *path = options->output ? frame_names_path(&options->frame_names, number) : NULL;
     if (path)
-        json_string(json, "file", path);
+        json_text(json, "file", path);
     free(path);
 }
 
@@ -77,13 +77,13 @@ void stream_print_json(struct json *json, const struct stream *stream, uint32_t 
     json_double(json, "frames_per_second", frames_per_second(stream, n_frames));
     json_uint(json, "late", stream->n_late);
     if (options->output) {
-        json_string(json, "output", options->output);
+        json_text(json, "output", options->output);
         json_uint(json, "written", n_frames);
         json_uint(json, "written_bytes", stream->written_bytes);
     }
     client_json_schedule(json, &stream->request);
     if (stream->request.show.kind != SHEEN_SHOW_LINES)
-        json_string(json, "show", text_show_kind(stream->request.show.kind));
+        json_text(json, "show", text_show_kind(stream->request.show.kind));
     if (stream->request.show.range > 0)
         json_double(json, "show_range", stream->request.show.range);
     json_array_begin(json, "frames");
