@@ -124,6 +124,10 @@ unit() {
         case $name in
         # Leaks of OpenImageIO are distinguished from sheen's by complete stacks only.
         test_image) beside "$name" env ASAN_OPTIONS=fast_unwind_on_malloc=0 "$build/tests/$name" ;;
+        # These draw so much that Mesa's code with optimisations saves more than it takes to compile.
+        test_gpu_rounding | test_gpu_tiles)
+            beside "$name" env -u GALLIVM_PERF -u LP_NATIVE_VECTOR_WIDTH "$build/tests/$name"
+            ;;
         *) beside "$name" "$build/tests/$name" ;;
         esac
     done

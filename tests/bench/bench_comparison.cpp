@@ -19,7 +19,7 @@ extern "C" {
 namespace
 {
 
-const size_t n_samples = 1000000;
+const char *const usual_samples = "1000000";
 
 void build(const loose_cage &parts, limit_tables *tables)
 {
@@ -56,7 +56,7 @@ void run(const comparison_setup &setup, int n_threads)
     computation_destroy(computation);
 }
 
-comparison_setup setup_of(const limit_tables *before, const limit_tables *after)
+comparison_setup setup_of(const limit_tables *before, const limit_tables *after, size_t n_samples)
 {
     comparison_setup setup = {};
     double size = 0;
@@ -103,7 +103,8 @@ void measure(report *report, table *table, const std::string &path)
     for (const auto &[name, other] : others) {
         limit_tables after;
         build(other, &after);
-        comparison_setup setup = setup_of(&before, &after);
+        comparison_setup setup =
+            setup_of(&before, &after, std::stoul(report->given().other("samples", usual_samples)));
         std::vector<turn> turns = measure_in_turn(
             report->given().runs, {[&](int) { return time_ms([&] { run(setup, 1); }); },
                                    [&](int) { return time_ms([&] { run(setup, 2); }); }});
@@ -128,6 +129,7 @@ void ask(report *report)
     table.print();
 }
 
-const question comparison("comparison", "a million samples against another surface", {}, ask);
+const question comparison("comparison", "a million samples against another surface", {"samples"},
+                          ask);
 
 } // namespace

@@ -73,7 +73,7 @@ class Bench(unittest.TestCase):
 class Defaults(unittest.TestCase):
     """On the device that a user gets who names none, with few runs and small models."""
     MODELS = ["tests/models/plane.obj"]
-    OPTIONS = {"wire": [*MODELS, "--frames", "1"], "size": ["--faces", "1024"], "worker": [], "paper": [], "closeup": []}
+    OPTIONS = {"wire": [*MODELS, "--frames", "1"], "size": ["--faces", "1024"], "comparison": [*MODELS, "--samples", "10000"], "worker": [], "paper": [], "closeup": []}
 
     def test_every_program_measures(self):
         programs = sorted(path for path in (BUILD / "tests").glob("bench_*") if "." not in path.name)
