@@ -272,6 +272,8 @@ TEST_LIB := $(BUILD)/libtests.a
 # only (-g1): a link leaves their debug information out, and writing all of it takes a quarter of the compiler's time.
 TEST_LINK := $(if $(FUZZ)$(SANITIZE)$(COVERAGE),,-fuse-ld=gold -Wl,--strip-debug)
 $(BUILD)/obj/tests/%.o: BASE += $(if $(TEST_LINK),-g1)
+# Unit tests and fuzz targets compute little in code of their own.
+$(BUILD)/obj/tests/unit/%.o $(BUILD)/obj/tests/fuzz/%.o: BASE += $(if $(FUZZ)$(SANITIZE)$(COVERAGE),,-O1)
 # The C++ of oracles and benchmarks, but that of a peer, which has flags of its own.
 ifneq ($(PARSED_ONCE),)
 STANDARD := $(BUILD)/obj/tests/parsed.hpp.gch
