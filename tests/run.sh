@@ -1,6 +1,6 @@
 #!/bin/bash
-# run.sh unit|fuzz|bench|service|oracle|all BUILD [NAME]: runs the tests of one kind, or all, or only the one
-# named NAME. Each row has the seconds that passed and the seconds of processors. The last line is the sum,
+# run.sh unit|fuzz|bench|service|oracle|all|checked BUILD [NAME]: runs the tests of one kind, or all, or those that
+# builds with sanitizers can run in an hour, or only the one named NAME. Each row has the seconds that passed and the seconds of processors. The last line is the sum,
 # "N passed, N failed". Each program's whole output is kept in BUILD/tests/NAME.log. Programs that do not depend
 # on time run in parallel, one more than there are processors, because some of them mostly wait. Tests of the
 # service whose file contains ALONE run one by one after the others, because they also judge the order and the
@@ -179,13 +179,11 @@ oracle() {
     beside twin "$build/tests/test_twin" tests/models/*.obj \
         $(printf '%s\n' $all | grep -v loop_val2_interior)
     beside deep "$build/tests/test_deep"
-    beside sectors "$build/tests/test_sectors"
     beside line_position "$build/tests/test_line_position"
     beside line_ends "$build/tests/test_line_ends"
     # shellcheck disable=SC2046 # a list of files without spaces
     beside comparison "$build/tests/test_comparison" $(shapes_of 'catmark_car.obj')
-    beside breaks "$build/tests/test_breaks"
-    beside random_cages "$build/tests/test_random_cages"
+    oracle_of_code
     car=$shapes/catmark_car.obj
     [ -f "$car" ] || car=tests/models/creases.obj
     beside far served "$build/tests/test_far" "$build/sheen" tests/models/fender.obj "$car"
@@ -213,6 +211,13 @@ oracle() {
     [ "$SHEEN_TEST_DEVICE" = "$mesa" ] || oracle_on_mesa
 }
 
+# Oracles that call the product's code with surfaces of many kinds, and draw nothing.
+oracle_of_code() {
+    beside breaks "$build/tests/test_breaks"
+    beside random_cages "$build/tests/test_random_cages"
+    beside sectors "$build/tests/test_sectors"
+}
+
 # The tests that also run on Mesa's software device. README.md tells how they were chosen.
 oracle_on_mesa() {
     beside mesa_frames on_mesa served "$build/tests/test_frames" "$build/sheen" tests/models/body.obj \
@@ -237,13 +242,17 @@ all)
     in_parallel oracle service unit fuzz bench
     service_alone
     ;;
+checked)
+    in_parallel oracle_of_code service unit fuzz
+    service_alone
+    ;;
 service)
     in_parallel service
     service_alone
     ;;
 unit | fuzz | bench | oracle) in_parallel "$kind" ;;
 *)
-    echo "usage: run.sh unit|fuzz|bench|service|oracle|all BUILD [NAME]" >&2
+    echo "usage: run.sh unit|fuzz|bench|service|oracle|all|checked BUILD [NAME]" >&2
     exit 2
     ;;
 esac
