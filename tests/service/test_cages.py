@@ -33,7 +33,7 @@ class Cage:
         noise.choice((self.sheet, self.fan, self.tube, self.soup))()
         for _ in range(noise.choice((0, 1, 2, 4))):
             noise.choice((self.poke, self.remove, self.merge, self.join, self.fin, self.turn, self.double,
-                          self.flatten, self.move_far))()
+                          self.flatten, self.move_far, self.coincide, self.line_up))()
         for _ in range(noise.choice((0, 0, 1, 3))):
             noise.choice((self.crease, self.crease, self.corner, self.other_tag))()
 
@@ -129,6 +129,19 @@ class Cage:
         at = self.noise.choice(self.points)
         for i in self.face():
             self.points[i] = at
+
+    def coincide(self):
+        """Two vertices at one place."""
+        a, b = (self.noise.randrange(len(self.points)) for _ in range(2))
+        self.points[a] = self.points[b]
+
+    def line_up(self):
+        """A face without area: its vertices on the line through two of them."""
+        face = self.face()
+        a, b = self.points[face[0]], self.points[face[1]]
+        for i in face[2:]:
+            t = self.noise.choice((0, 0.5, 1, self.noise.random()))
+            self.points[i] = tuple(x + t * (y - x) for x, y in zip(a, b))
 
     def move_far(self):
         far = self.noise.choice((1e-30, 1e6, 1e15, 1e29, -1e30))
