@@ -143,7 +143,8 @@ class Greedy(unittest.TestCase):
              self.daemon.tcp, str(connections), *map(str, self.size)], env={**os.environ, "SHEEN_BUILD": BUILD},
             stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
         self.assertEqual(greedy.stdout.readline(), "begun\n")
-        os.setpriority(os.PRIO_PROCESS, greedy.pid, 10)  # a separate process, like a client on another machine
+        own = os.getpriority(os.PRIO_PROCESS, 0)
+        os.setpriority(os.PRIO_PROCESS, greedy.pid, min(19, own + 10))  # a separate process, like a client on another machine
         self.turn(client, model, 1)
         times = self.turn(client, model, seconds)
         greedy.stdin.close()
@@ -173,21 +174,26 @@ class Greedy(unittest.TestCase):
 
 
 class SoakBudget(unittest.TestCase):
-    """A mixed load at the least budget and at 1 GB, both at once: resident memory stays within 15 % of the budget and
-    does not grow."""
+    """A mixed load at the least budget and at 1 GB, both at once: resident memory stays within 15 % of the budget, and
+    what the daemon does not account for does not grow. (The larger budget fills with models, as it should.) The first
+    half of the time is the warm-up."""
     CLIENTS = 3
+    ACCOUNTED = range(61, 67)  # assets_bytes to spare_bytes of STATS
 
     def watch(self, daemon, mib, figures):
-        """Samples the daemon's resident memory while its clients load it, after a tenth of the time."""
+        """Samples the daemon's resident memory while its clients load it: (s, kB, kB that are not accounted for)."""
         start, samples, done = time.monotonic(), [], []
         ends = start + SECONDS
         clients = [threading.Thread(target=mixed_load, args=(daemon, seed, ends, done)) for seed in range(self.CLIENTS)]
         for client in clients:
             client.start()
-        time.sleep(SECONDS / 10)
-        while any(client.is_alive() for client in clients):
-            samples.append((time.monotonic() - start, resident_kb(daemon.process.pid)))
-            time.sleep(0.02)
+        with Client(daemon.unix, minor=5, timeout=3600) as looking:
+            while any(client.is_alive() for client in clients):
+                stats = looking.stats()
+                kb = resident_kb(daemon.process.pid)
+                accounted = sum(stats[field][0] for field in self.ACCOUNTED)
+                samples.append((time.monotonic() - start, kb, kb - accounted / 1024))
+                time.sleep(0.05)
         figures[mib] = samples, done
 
     def test_mixed_load(self):
@@ -201,16 +207,17 @@ class SoakBudget(unittest.TestCase):
         for mib, daemon in daemons.items():
             samples, done = figures[mib]
             frames = len(done)
-            most = max(kb for _, kb in samples) / 1024
+            most = max(kb for _, kb, _ in samples) / 1024
             # The slope of the tenths' means, with its standard error: neighbouring samples are not independent.
-            means = [sum(part) / len(part) / 1024 for part in tenths(samples)]
+            warm = [(at, kb) for at, _, kb in samples if at > SECONDS / 2]
+            means = [sum(part) / len(part) / 1024 for part in tenths(warm)]
             slope, error = slope_of(means)
             say(f"mixed load, {SECONDS} s at {mib} MB: {frames} frames, resident at most {most:.1f} MB "
-                f"({most / mib:.3f} x), means of its tenths {', '.join(f'{mean:.1f}' for mean in means)} MB: "
-                f"{10 * slope:+.2f} +- {10 * error:.2f} MB over the time")
+                f"({most / mib:.3f} x); not accounted for, tenths of the second half {', '.join(f'{mean:.1f}' for mean in means)} MB: "
+                f"{10 * slope:+.2f} +- {10 * error:.2f} MB over them")
             with self.subTest(budget=mib):
                 self.assertEqual(done.count(None), self.CLIENTS)
-                self.assertGreater(frames, 100)
+                self.assertGreater(frames, 20)
                 self.assertLessEqual(most, 1.15 * mib)
                 self.assertLessEqual(10 * slope, 30 * error + 0.01 * mib)
             self.assertEqual(daemon.stop(), 0)
