@@ -39,8 +39,8 @@ struct usd_shared {
 bool usd_share_settings(struct usd_shared *shared, const struct usd_prim *prim,
                         const struct usd_settings *settings);
 
-/* Gives the rule of triangles to the cage. It matters only to meshes that have triangles: false with
- * ERROR_MODEL if two of these differ. */
+/* Gives the rule of triangles to the cage. It matters only to meshes that have triangles: false
+ * with ERROR_MODEL if two of these differ. */
 bool usd_share_triangle_rule(struct usd_shared *shared, const struct usd_prim *prim, bool smooth,
                              bool has_triangle);
 

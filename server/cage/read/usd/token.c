@@ -80,8 +80,8 @@ static bool is_in_number(char c)
 }
 
 /* Reads from `opening` to `closing`, over several lines if `closing` is three characters. `escape`
- * and the `escaped` bytes after it do not end it; NULL: there is no escape. `what` names the token in
- * the message. */
+ * and the `escaped` bytes after its first one do not end it; NULL: there is no escape. `what` names
+ * the token in the message. */
 static bool read_quoted(struct usd_text *text, struct usd_token *token, const char *opening,
                         const char *closing, const char *escape, size_t escaped, const char *what)
 {
