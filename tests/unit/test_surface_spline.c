@@ -144,6 +144,52 @@ static void test_smoothness(void **unused)
     }
 }
 
+/* A patch of the surface z = q0 x^2 + q1 x y + q2 y^2 with x = x0 + u and y = v + shear u. */
+static struct cage_patch quadratic_patch(const double q[3], double x0, double shear)
+{
+    struct cage_patch patch = {.basis = CAGE_BEZIER};
+    /* As a polynomial: 1, u, v, u^2, u v, v^2. */
+    const double c[6] = {q[0] * x0 * x0,
+                         2 * q[0] * x0 + q[1] * x0 * shear,
+                         q[1] * x0,
+                         q[0] + q[1] * shear + q[2] * shear * shear,
+                         q[1] + 2 * q[2] * shear,
+                         q[2]};
+    for (int k = 0; k < 16; k++) {
+        const int i = k % 4, j = k / 4;
+        const double u = i / 3.0, v = j / 3.0, uu = i * (i - 1) / 6.0, vv = j * (j - 1) / 6.0;
+        patch.point[k][0] = x0 + u;
+        patch.point[k][1] = v + shear * u;
+        patch.point[k][2] = c[0] + c[1] * u + c[2] * v + c[3] * uu + c[4] * u * v + c[5] * vv;
+    }
+    return patch;
+}
+
+/* Smoothness belongs to the surface: parameter lines that bend at a joint change nothing, and another curvature across
+ * it is found in spite of them. */
+static void test_smoothness_of_sheared_patches(void **unused)
+{
+    (void)unused;
+    state = 4;
+    for (int round = 0; round < 60; round++) {
+        double q[3], other[3], shear = 2 * uniform() - 1;
+        struct cage_patch patch[2];
+        struct limit_tables tables;
+        const bool bends = round & 1;
+        for (int k = 0; k < 3; k++)
+            q[k] = other[k] = 2 * uniform() - 1;
+        patch[0] = quadratic_patch(q, -1, 0);
+        other[0] += bends ? 0.1 : 0; /* x^2 vanishes with its slope at x = 0 */
+        patch[1] = quadratic_patch(other, 0, shear);
+        struct cage cage = cage_of(patch, 2);
+        build_cage(&cage, true, &tables);
+        assert_int_equal(tables.adjacency[0].across[1], 1 << 2 | 3);
+        assert_int_equal(tables.nodes[0].borders >> 4 & 15, 0);
+        assert_true((tables.bends && tables.bends[0] >> 1 & 1) == bends);
+        limit_tables_finish(&tables);
+    }
+}
+
 /* Poles have no neighbour and are no border; three patches along one curve are not joined. */
 static void test_poles_and_tangles(void **unused)
 {
@@ -319,8 +365,11 @@ static void test_bottle_against_long_double(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_joints_of_a_torus),          cmocka_unit_test(test_smoothness),
-        cmocka_unit_test(test_poles_and_tangles),          cmocka_unit_test(test_faces_of_a_cage),
+        cmocka_unit_test(test_joints_of_a_torus),
+        cmocka_unit_test(test_smoothness),
+        cmocka_unit_test(test_smoothness_of_sheared_patches),
+        cmocka_unit_test(test_poles_and_tangles),
+        cmocka_unit_test(test_faces_of_a_cage),
         cmocka_unit_test(test_bottle_against_long_double),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
