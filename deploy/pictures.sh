@@ -1,6 +1,6 @@
 #!/bin/sh
 # pictures.sh MODEL FOLDER: draws the pictures of README.md. three_looks.jpg shows the results of its first
-# commands, contact_sheet.jpg every line family, light and pattern.
+# commands, contact_sheet.jpg every line family, light and pattern, patches.jpg a model of Bezier patches.
 # Needs oiiotool (Debian: openimageio-tools) and the programs of `make`.
 set -eu
 [ $# = 2 ] || { sed -n '2,4s/^# //p' "$0" >&2; exit 2; }
@@ -46,3 +46,9 @@ panel "two lights, opacity" --light rectangle \
     --pattern lines:at=0.35/0.5/0.65,width=0.02,fg=#d02020,bg=#00000000 \
     --light tunnel --pattern stripes:count=24,opacity=0.5
 mosaic 4x3 contact_sheet.jpg
+
+model=$(dirname "$0")/../tests/models/bottle.bpt
+panel "zebra" --lines zebra --pattern stripes:count=16 --up z --view right
+panel "a tunnel of lights" --pattern stripes:count=20 --up z --view iso
+panel "--show gaussian" --show gaussian --legend off --up z --view right
+mosaic 3x1 patches.jpg
