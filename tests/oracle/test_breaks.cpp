@@ -159,7 +159,9 @@ void judge(uint64_t seed, const random_cage &made, census *all, verdict *verdict
     solid_cage solid(made.parts);
     osd_oracle oracle(solid.cage);
     table_evaluator built(solid.cage);
-    const light light = {LIGHT_SPHERE, {0, 0, 0}, {1, 0, 0}, {0, 0, 1}, false, {}};
+    light light = {};
+    light.kind = LIGHT_SPHERE;
+    light.u[0] = light.v[2] = 1;
     lines family = {};
     family.eye_kind = LINE_EYE_DIRECTION;
     family.eye[2] = -1;
