@@ -9,6 +9,7 @@
 #include "client/cli/base/failure.h"
 #include "client/cli/client.h"
 #include "client/cli/commands.h"
+#include "client/cli/notices.h"
 #include "client/cli/options/values.h"
 #include "client/cli/output/pick.h"
 #include "client/cli/output/scene_json.h"
@@ -157,6 +158,7 @@ static int run(const struct options *options)
     struct picks picks = {.n = options->has_section ? options->samples : 1,
                           .request = options->request,
                           .frame = SHEEN_FRAME_DEFAULTS};
+    struct sheen_model_info info = SHEEN_MODEL_INFO_DEFAULTS;
     picks.request.window.width_px = options->request.width_px;
     picks.request.window.height_px = options->request.height_px;
     picks.request.width_px = picks.request.height_px = 1;
@@ -178,6 +180,10 @@ static int run(const struct options *options)
     progress_clear(&client.progress);
     if (!status)
         status = print(&client, options, &picks);
+    if (!status)
+        notices_ask(&client, options, &info);
+    if (!status)
+        notices_print_model(&client, options, &picks.frame, &info);
     sheen_frame_finish(&picks.frame);
     free(picks.asked);
     free(picks.pick);

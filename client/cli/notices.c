@@ -26,8 +26,8 @@ static const char *light_advice(const struct sheen_request *request)
                        "--light-center, --light-u and --light-v";
 }
 
-void notices_print(struct client *client, const struct options *options,
-                   const struct sheen_frame *frame, const struct sheen_model_info *info)
+void notices_print_model(struct client *client, const struct options *options,
+                         const struct sheen_frame *frame, const struct sheen_model_info *info)
 {
     if (options->quiet)
         return;
@@ -37,6 +37,14 @@ void notices_print(struct client *client, const struct options *options,
                       "up is taken as %s (a guess from the model's box); if that is wrong, give "
                       "--up %s or another direction",
                       frame->up[2] != 0 ? "z" : "y", frame->up[2] != 0 ? "y" : "z");
+}
+
+void notices_print(struct client *client, const struct options *options,
+                   const struct sheen_frame *frame, const struct sheen_model_info *info)
+{
+    if (options->quiet)
+        return;
+    notices_print_model(client, options, frame, info);
     if (frame->blank)
         fprintf(stderr, "sheen: warning: no pixel shows the surface: see --eye, --target, --zoom, "
                         "--fov and --ortho; without them a camera frames the model\n");

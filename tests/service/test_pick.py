@@ -130,6 +130,23 @@ class Pick(DaemonCase):
             self.assertEqual([array if not math.isnan(array[0]) else None for array in found],
                              [one.get(key) for one in objects])
 
+    def test_notices_are_those_of_the_picture(self):
+        """Of the model's file and of the guessed up direction, once for all samples, and none with -q."""
+        with tempfile.TemporaryDirectory(prefix="sheen-test-") as folder:
+            model = os.path.join(folder, "tall.obj")
+            with open(os.path.join(MODELS, "sheet.obj"), encoding="utf-8") as file, open(model, "w",
+                                                                                      encoding="utf-8") as copy:
+                copy.write(file.read() + "t scheme 0/0/1 loop\n")
+            common = ("--size", SIZE, "--server", self.daemon.unix)
+            drawn = subprocess.run([SHEEN, "render", model, "-o", os.path.join(folder, "a.png"), *common],
+                                   capture_output=True, text=True, timeout=60)
+            notices = drawn.stderr.splitlines()[:-1]
+            self.assertEqual(len(notices), 2, drawn.stderr)
+            for words in (("160,120",), ("--section", "0,120,319,120", "--samples", "5")):
+                done = subprocess.run([SHEEN, "pick", model, *words, *common], capture_output=True, text=True, timeout=60)
+                self.assertEqual((done.returncode, done.stderr.splitlines()), (0, notices))
+                self.assertEqual(self.run_it(*words, "-q", model=model).stderr, "")
+
     def test_places_that_are_refused(self):
         for words, text in (((), "X,Y or --section is missing"), (("1",), "two numbers X,Y"), (("320,0",), "0,0 to 319,239"),
                             (("0,-1",), "is not in the picture"), (("1,1", "2,2"), "one argument too many"),
