@@ -135,11 +135,6 @@ static bool apply_junit(struct options *options, const char *value, char *why)
     return *value || options_refuse(why, "must be a file");
 }
 
-static bool apply_deadline(struct options *options, const char *value, char *why)
-{
-    return options_whole(&RANGES[RANGE_DEADLINE], value, &options->request.deadline_ms, why);
-}
-
 static const struct option_row ROWS[] = {
     {"angle", 0, "DEG",
      "largest angle between the normals of both sides of an edge,\n"
@@ -161,15 +156,11 @@ static const struct option_row ROWS[] = {
      apply_output, NULL},
     {"junit", 0, "FILE", "write a JUnit report, with a test case for each limit", apply_junit,
      NULL},
-    {"deadline", 0, "MS",
-     "give up after this time, {}\n(default: none). It is checked between steps of "
-     "some\nmilliseconds: what is computed within the first of them is answered",
-     apply_deadline, NULL},
     {0},
 };
 
 static const struct option_row *const TABLES[] = {
-    ROWS,           OPTIONS_SIZE,      OPTIONS_SCENE,  OPTIONS_MODEL,
+    ROWS,           OPTIONS_DEADLINE,  OPTIONS_SIZE,   OPTIONS_SCENE, OPTIONS_MODEL,
     OPTIONS_COMMON, OPTIONS_RECONNECT, OPTIONS_OUTPUT, NULL};
 
 const struct command COMMAND_BREAKS = {

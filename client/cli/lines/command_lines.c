@@ -360,11 +360,6 @@ static bool apply_silhouettes(struct options *options, const char *value, char *
     return true;
 }
 
-static bool apply_deadline(struct options *options, const char *value, char *why)
-{
-    return options_whole(&RANGES[RANGE_DEADLINE], value, &options->request.deadline_ms, why);
-}
-
 static bool check(struct options *options, char *why)
 {
     if (!options->output)
@@ -395,15 +390,11 @@ static const struct option_row ROWS[] = {
      "surface is none",
      apply_silhouettes, NULL},
     {"visible-only", 0, NULL, "leave out what the camera does not see", apply_visible_only, NULL},
-    {"deadline", 0, "MS",
-     "give up after this time, {}\n(default: none). It is checked between steps of "
-     "some\nmilliseconds: what is computed within the first of them is answered",
-     apply_deadline, NULL},
     {0},
 };
 
 static const struct option_row *const TABLES[] = {
-    ROWS,           OPTIONS_SIZE,      OPTIONS_SCENE,  OPTIONS_MODEL,
+    ROWS,           OPTIONS_DEADLINE,  OPTIONS_SIZE,   OPTIONS_SCENE, OPTIONS_MODEL,
     OPTIONS_COMMON, OPTIONS_RECONNECT, OPTIONS_OUTPUT, NULL};
 
 const struct command COMMAND_LINES = {

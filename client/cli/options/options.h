@@ -141,6 +141,7 @@ extern const struct option_row OPTIONS_SCENE[];    /* camera, light, pattern */
 extern const struct option_row OPTIONS_COLOURS[];  /* colours, antialias, filter */
 extern const struct option_row OPTIONS_SURFACE[];  /* surface, show, show-range */
 extern const struct option_row OPTIONS_SCHEDULE[]; /* class, deadline */
+extern const struct option_row OPTIONS_DEADLINE[]; /* of one computation */
 extern const struct option_row OPTIONS_JPEG[];     /* jpeg-quality, jpeg-subsampling */
 
 /* The tables of commands that render a model's frames, after a command's own rows. */

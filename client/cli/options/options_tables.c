@@ -387,6 +387,14 @@ const struct option_row OPTIONS_SCHEDULE[] = {
     {0},
 };
 
+const struct option_row OPTIONS_DEADLINE[] = {
+    {"deadline", 0, "MS",
+     "give up after this time, {}\n(default: none). It is checked between steps of "
+     "some\nmilliseconds: what is computed within the first of them is answered",
+     apply_deadline, NULL},
+    {0},
+};
+
 const struct option_row OPTIONS_MODEL[] = {
     {"weld", 0, NULL,
      "join vertices of an OBJ file at exactly equal positions; glTF meshes are\n"
