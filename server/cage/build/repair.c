@@ -89,7 +89,7 @@ static void repair_faces(struct repair *repair)
     struct cage_builder *builder = repair->builder;
     struct cage *cage = &builder->cage;
     uint32_t kept_faces = 0, kept_corners = 0, first = 0;
-    uint32_t none; /* no face may have a corner, and nothing may be added to a null pointer */
+    uint32_t none = 0; /* no face may have a corner, and nothing may be added to a null pointer */
     uint32_t *corners = cage->face_vertex ? cage->face_vertex : &none;
     for (uint32_t f = 0; f < cage->n_faces; f++) {
         uint32_t last = cage->face_start[f + 1];

@@ -291,7 +291,11 @@ static bool is_of_curves(const struct obj_field *keyword)
 
 bool obj_read_surface(struct obj_reader *reader, const struct obj_field *keyword, bool *is_known)
 {
+    const bool is_setting = obj_field_is(keyword, "cstype") || obj_field_is(keyword, "deg");
     *is_known = true;
+    if (is_setting && reader->surface.line)
+        return obj_fail(reader, "%.*s within the surface of line %u, which has no end before",
+                        OBJ_SHOWN(keyword), reader->surface.line);
     if (obj_field_is(keyword, "cstype"))
         return read_type(reader);
     if (obj_field_is(keyword, "deg"))
