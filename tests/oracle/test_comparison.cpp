@@ -448,6 +448,32 @@ void judge_rotation(verdict *verdict)
     verdict->at_most(worst(aligned, COMPARISON_NORMAL), 2e-5, "aligned: normals");
 }
 
+/* A flat square whose height grows with y: the distances are spread evenly from 0 to the largest one. */
+void judge_figures(verdict *verdict)
+{
+    const double side = 4, slope = 1e-3, most = slope * side;
+    loose_cage square = sheet((int)side, [](int, int) { return 0.0; });
+    for (uint32_t vertex : {0u, 4u, 20u, 24u})
+        square.corners.push_back({vertex, 10});
+    loose_cage tilted = square;
+    for (vec3 &p : tilted.position)
+        p.z = slope * p.y;
+    surface before(square), after(tilted);
+    comparison_setup setup = setup_of(before, after);
+    setup.limit[COMPARISON_DISTANCE] = 0.3 * most;
+    comparison_result result = compare(setup);
+    for (const comparison_result_side &of : result.side) {
+        const comparison_figures &figures = of.figures[COMPARISON_DISTANCE];
+        verdict->at_most(std::fabs(of.area / (side * side) - 1), 1e-6, "area of a square");
+        verdict->at_most(std::fabs(figures.worst / most - 1), 2e-3, "tilted: worst");
+        verdict->at_most(std::fabs(figures.rms / (most / std::sqrt(3.0)) - 1), 1e-3, "tilted: rms");
+        verdict->at_most(std::fabs(figures.p95 / most - 0.95), 0.01, "tilted: 95 %");
+        verdict->at_most(std::fabs(figures.p99 / most - 0.99), 0.01, "tilted: 99 %");
+        verdict->at_most(std::fabs(figures.area_out / (side * side) - 0.7), 0.01,
+                         "tilted: area out");
+    }
+}
+
 /* The area that a closed uniform cubic B-spline curve encloses (Green's theorem, by a fine polygon). */
 double area_of_curve(const std::vector<vec3> &points)
 {
@@ -675,6 +701,7 @@ int main(int argc, char **argv)
     judge_larger_bodies(&verdict);
     judge_moved_vertex(&verdict);
     judge_rotation(&verdict);
+    judge_figures(&verdict);
     judge_hole(&verdict);
     judge_strips(&verdict);
     judge_computation(&verdict);
