@@ -1,10 +1,11 @@
-/* The native device with tables on demand: the same bytes as with stored tables, however small the
- * cache is and whatever was drawn before; and the memory that a mesh of plain triangles takes. */
+/* The native device with tables on demand: the same bytes however small the cache is and whatever was
+ * drawn before, and the same picture as with stored tables, whose points are rounded to single
+ * precision, but for rounding; and the memory that a mesh of plain triangles takes. */
 #include "server/render/native/device.h"
 #include "server/render/native/native.h"
 #include "server/render/native/patches.h"
 #include "server/surface/evaluate.h"
-#include "tests/unit/renderer_frames.h"
+#include "tests/unit/native_scene.h"
 
 enum { WIDTH = 160, HEIGHT = 120, PX = WIDTH * HEIGHT, N_FLOATS = 9, N_WORDS = 4 };
 
@@ -57,7 +58,7 @@ static struct native_model *open_model(const struct limit_tables *tables, size_t
     return model;
 }
 
-static size_t compare(const struct planes *a, const struct planes *b, const char *name)
+static size_t assert_same_planes(const struct planes *a, const struct planes *b, const char *name)
 {
     size_t n = 0;
     for (size_t i = 0; i < PX; i++) {
@@ -98,41 +99,39 @@ static bool zoom_on_corner(const struct limit_tables *tables, struct camera *cam
 static void test_same_planes(void **state)
 {
     (void)state;
-    static struct planes from_stored, from_made;
+    static struct planes from_all, from_made;
     for (size_t m = 0; m < N_MODELS; m++) {
-        struct limit_tables stored, made;
+        struct limit_tables made;
         struct camera camera[2];
-        build_file(MODELS[m], &stored);
         build_file_on_demand(MODELS[m], &made);
-        scene_default_camera(&stored, NULL, VIEW_AROUND, WIDTH, HEIGHT, &camera[0]);
-        assert_true(zoom_on_corner(&stored, &camera[1]));
-        /* One model keeps all patches, one keeps almost none, and one keeps a megabyte of them. */
+        scene_default_camera(&made, NULL, VIEW_AROUND, WIDTH, HEIGHT, &camera[0]);
+        assert_true(zoom_on_corner(&made, &camera[1]));
+        /* Models that keep all patches, almost none, and a megabyte of them, against one that is new for each view. */
         const size_t bytes[3] = {NATIVE_PATCH_BYTES, 0, 1 << 20};
-        struct native_model *all = open_model(&stored, NATIVE_PATCH_BYTES);
         struct native_model *model[3];
         for (int k = 0; k < 3; k++)
             model[k] = open_model(&made, bytes[k]);
         for (int look = 0; look < 4; look++) {
-            draw(1, all, &camera[look & 1], &from_stored);
+            struct native_model *all = open_model(&made, NATIVE_PATCH_BYTES);
+            draw(1, all, &camera[look & 1], &from_all);
+            native_model_destroy(all);
             for (int k = 0; k < 3; k++) {
                 draw(1 + (unsigned)(look + k) % 3, model[k], &camera[look & 1], &from_made);
-                size_t n = compare(&from_stored, &from_made, MODELS[m]);
+                size_t n = assert_same_planes(&from_all, &from_made, MODELS[m]);
                 if (n <= PX / 20)
                     fail_msg("%s: %zu pixels from view %d", MODELS[m], n, look);
             }
         }
         assert_true(native_model_bytes(model[1]) < 400000);
-        native_model_destroy(all);
         for (int k = 0; k < 3; k++)
             native_model_destroy(model[k]);
-        limit_tables_finish(&stored);
         limit_tables_finish(&made);
     }
 }
 
 /* --- whole pictures, with outlines and roundings */
 
-static void test_same_frames(void **state)
+static void test_alike_with_stored_tables(void **state)
 {
     (void)state;
     const struct renderer_options options = {.device = "native"};
@@ -150,7 +149,8 @@ static void test_same_frames(void **state)
             frame[k] = render(renderer, model, &request);
             renderer_model_destroy(renderer, model);
         }
-        assert_same_frames(&frame[0], &frame[1]);
+        const struct difference found = compare(&frame[0], &frame[1]);
+        assert_alike(&found, MODELS[m]);
         assert_true(hits(&frame[0]) > PX / 20);
         for (int k = 0; k < 2; k++) {
             frame_finish(&frame[k]);
@@ -224,7 +224,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_same_planes),
-        cmocka_unit_test(test_same_frames),
+        cmocka_unit_test(test_alike_with_stored_tables),
         cmocka_unit_test(test_triangles),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

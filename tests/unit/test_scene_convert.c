@@ -45,6 +45,9 @@ static void test_defaults_are_valid(void **state)
     struct frame_request again;
     scene_read_request(&render, &SUBJECT, &again);
     assert_memory_equal(&again.camera.eye, &request.camera.eye, sizeof again.camera.eye);
+    /* apart from who chose the light */
+    assert_true(request.lights[0].is_chosen && !again.lights[0].is_chosen);
+    again.lights[0].is_chosen = true;
     assert_memory_equal(&again.lights[0], &request.lights[0], sizeof again.lights[0]);
 }
 
