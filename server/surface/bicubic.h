@@ -10,8 +10,8 @@
 struct bicubic_points {
     double scale;           /* power of two by which the points in texels are divided */
     const float (*rows)[4]; /* four rows */
-    /* If not NULL: the first point of each row, and the last point of each row in `rows` is not
-     * used. */
+    /* If not NULL: the first point of each row is taken from `column`, followed by the first three
+     * points of the row in `rows`. */
     const float (*column)[4];
     /* If not NULL: point (-1,-1) before it was rounded; the next row begins `stride` points
      * further. */

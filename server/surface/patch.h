@@ -1,7 +1,8 @@
 /* Patches: a patch is the smallest part of a surface that is one polynomial. It is found by a place
  * on the surface, or by its number in a node. Users find a patch, evaluate it (evaluate.h) and
- * bound it. Only this interface and evaluate.c know how many kinds of node there are, how many
- * corners a node's domain has, and the degree of its patches.
+ * bound it. Only this interface and evaluate.c know how many kinds of node there are and how many
+ * corners a node's domain has. The degree of the patches (3) is also known to server/curves/fields,
+ * to server/curves/compare and to devices that evaluate patches themselves (limit_patch_points()).
  *
  * A patch points into its tables, or holds points that were made for it; a copy of a patch still
  * points to those of the original. Any thread; cannot fail. */
@@ -38,21 +39,23 @@ struct limit_patch {
     bool is_vertex;
     int level;                /* as in limit_patch_of_level() */
     const float (*texels)[4]; /* the points of the whole level */
-    const struct vec *exact;  /* the same in double precision (source.h); NULL from stored tables */
-    struct limit_level made;  /* tables on demand: the points */
+    /* The same in double precision (source.h); NULL if the tables are stored. */
+    const struct vec *exact;
+    struct limit_level made; /* tables on demand: the points */
 };
 
 /* Finds the patch at a place. False in a hole. */
 bool limit_patch_find(const struct limit_tables *tables, const struct limit_place *place,
                       struct limit_patch *patch);
 
-/* As limit_patch_find(), for a patch that an earlier call has found in these tables, or that is zeroed: if the place is in
- * the same level of the same node, its points are not made again. */
+/* As limit_patch_find(), for a patch that an earlier call has found in these tables, or that is
+ * zeroed: if the place is in the same level of the same node, its points are not made again. */
 bool limit_patch_find_again(const struct limit_tables *tables, const struct limit_place *place,
                             struct limit_patch *patch);
 
-/* The level of a node that contains local (x,y), as limit_patch_of_level() numbers levels; beyond the last one of a
- * CORNER it is the number of levels + 1, which stands for the vertex. */
+/* Returns the number of the level of a node that contains local (x,y), as in
+ * limit_patch_of_level(). Inside the last level of a CORNER it returns the number of levels + 1,
+ * which stands for the vertex. */
 int limit_level_at(const struct limit_node *node, double x, double y);
 
 /* Gets the patch of level n (from 1) of a CORNER or STRIP that contains local (x,y), or that of a
@@ -61,15 +64,15 @@ int limit_level_at(const struct limit_node *node, double x, double y);
 void limit_patch_of_level(struct limit_patch *patch, const struct limit_tables *tables,
                           const struct limit_node *node, int n, double x, double y);
 
-/* Gets the patch of the same level as `kept` that contains local (x,y), without making points again: it points to
- * those of `kept`, which came from limit_patch_of_level(). */
+/* Gets the patch of the same level as `kept` that contains local (x,y), without making points
+ * again: it points to those of `kept`, which came from limit_patch_of_level(). */
 void limit_patch_in_level(struct limit_patch *patch, const struct limit_patch *kept, double x,
                           double y);
 
-/* Gets the 16 control points of a patch, in double precision from tables on demand and rounded to single precision from
- * stored ones. The patch is a uniform bicubic B-spline: grid[4 (j + 1) + (i + 1)], i
- * along s and j along t, both from -1 to 2, in the node's frame and in the model's units. Returns
- * the power of two by which the tables divide them. For devices that evaluate patches
+/* Gets the 16 control points of a patch, in double precision from tables on demand and rounded to
+ * single precision from stored ones. The patch is a uniform bicubic B-spline: grid[4 (j + 1) + (i +
+ * 1)], i along s and j along t, both from -1 to 2, in the node's frame and in the model's units.
+ * Returns the power of two by which the tables divide them. For devices that evaluate patches
  * themselves. */
 double limit_patch_points(const struct limit_patch *patch, struct vec grid[16]);
 
@@ -79,8 +82,8 @@ struct limit_square {
 };
 
 /* Bounds how far a part of the patch extends from `centre` (world) and how much it bends (bound.h,
- * weighed). With `unseen`, a unit vector along which a camera looks: at most the bend across that
- * vector, which is all that the camera sees. */
+ * weighed). If `unseen` is not NULL, it is the unit vector along which a camera looks. The bend is
+ * then bounded only across that vector, because the camera sees no bend along it. */
 struct limit_bound limit_patch_bound(const struct limit_tables *tables,
                                      const struct limit_patch *patch, struct limit_square part,
                                      const struct vec *unseen, double centre[3]);

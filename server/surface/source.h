@@ -20,14 +20,14 @@ enum { LIMIT_LEVEL_SIDE = 5, LIMIT_LEVEL_POINTS = LIMIT_LEVEL_SIDE * LIMIT_LEVEL
 struct limit_level {
     /* As tables store them: the x of the first texel is the scale; the points' texels follow. */
     float texels[1 + LIMIT_LEVEL_TEXELS][4];
-    /* Before they are rounded, in the node's frame and in the model's units: a CORNER's as
-     * texels_write_level() takes them, else 16 as texels_write_patch() takes them. */
+    /* The points before rounding, in the node's frame and in the model's units: 25 for a CORNER
+     * (texels_write_level()), else the first 16 (texels_write_patch()). */
     struct vec points[LIMIT_LEVEL_POINTS];
 };
 
 struct limit_source {
+    /* keep() adds a reference, drop() removes one. Any thread. */
     void (*keep)(struct limit_source *source);
-    /* keep() adds a reference and drop() removes one; any thread. */
     void (*drop)(struct limit_source *source);
     /* Makes level n (from 1) of a CORNER, patch n of a STRIP, or the points of a REGULAR node (n is
      * ignored), for tables built from this source: the same bytes as stored tables have. `level` or

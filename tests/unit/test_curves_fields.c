@@ -1,4 +1,5 @@
-/* F of lines on patches: its derivatives, its ranges over pieces, and its crossings along segments, each against F at points. */
+/* F of lines on patches: its derivatives, its ranges over pieces, and its crossings along segments,
+ * each against F at points. */
 #include <math.h>
 #include <string.h>
 
@@ -66,7 +67,8 @@ static bool random_line(unsigned kind, struct line_field *field, struct field_li
     return line_field_init(field, &map) && field_line_init(field, place, line);
 }
 
-/* F at (u,v) with its derivatives, for the normal divided by its part along c, as ranges have it. */
+/* F at (u,v) with its derivatives, for the normal divided by its part along c, as ranges have
+ * it. */
 static void jet_along(const struct line_field *field, const struct field_line *line,
                       const struct bezier *bezier, struct vec c, double u, double v, double jet[3])
 {
@@ -99,8 +101,8 @@ struct counted {
     double tightest; /* the largest share of a rest that is used */
 };
 
-/* F and its derivatives at points of a piece differ from the polynomial by no more than the rests, and have the signs
- * that the range claims. */
+/* F and its derivatives at points of a piece differ from the polynomial by no more than the rests,
+ * and have the signs that the range claims. */
 static void check_piece(const struct line_field *field, const struct field_line *line,
                         const struct bezier *bezier, const struct piece *piece,
                         struct counted *counted)
@@ -234,12 +236,62 @@ static void all_crossings_are_found_and_no_others(void **state)
     assert_true(found > 300 && several > 30);
 }
 
+/* The eye lies in the plane of the patch, so that F is 0 but for rounding, and the noise is set to
+ * 0: F changes its sign at random. */
+static void more_crossings_than_fit_keep_the_parity(void **state)
+{
+    (void)state;
+    enum { CANARY = 200 };
+    unsigned most = 0, sides[2] = {0, 0};
+    random_state = 29;
+    for (int i = 0; i < 60; i++) {
+        struct vec a = {random_signed(), random_signed(), random_signed()};
+        struct vec b = {random_signed(), random_signed(), random_signed()};
+        struct bezier bezier = {.origin = {0, 0, 0}};
+        struct line_map map = {.eye_is_point = true, .eye = vec_mad(vec_scale(a, 3), -2, b)};
+        struct line_field field;
+        struct field_line line;
+        struct patch_field on;
+        struct segment segment;
+        struct crossings crossings;
+        double at[MOST_CROSSINGS + CANARY];
+        for (int k = 0; k < 16; k++) {
+            struct vec p = vec_mad(vec_scale(a, k / 4 + 0.2 * random_signed()),
+                                   k % 4 + 0.2 * random_signed(), b);
+            bezier.p[0][k / 4][k % 4] = p.x;
+            bezier.p[1][k / 4][k % 4] = p.y;
+            bezier.p[2][k / 4][k % 4] = p.z;
+        }
+        silhouette_field_init(&field, &map);
+        assert_true(field_line_init(&field, 0, &line));
+        patch_field_init(&on, &field, &bezier);
+        on.bounds.g[0] = 0;
+        segment_of_bezier(&bezier, i % 4, &segment);
+        crossings_init(&crossings, &on, &segment);
+        for (int k = 0; k < MOST_CROSSINGS + CANARY; k++)
+            at[k] = -1;
+        bool negative[2] = {patch_field_is_negative(&on, &line, segment.from),
+                            patch_field_is_negative(&on, &line, segment.to)};
+        unsigned n = (unsigned)crossings_find(&crossings, &on, &line, negative, at);
+        assert_true(n <= MOST_CROSSINGS && n % 2 == (negative[0] != negative[1]));
+        for (unsigned k = 1; k < n; k++)
+            assert_true(at[k] > at[k - 1]);
+        for (int k = MOST_CROSSINGS; k < MOST_CROSSINGS + CANARY; k++)
+            assert_true(at[k] == -1);
+        most = n > most ? n : most;
+        sides[n % 2]++;
+    }
+    print_message("%u crossings at most\n", most);
+    assert_true(most >= MOST_CROSSINGS - 1 && sides[0] > 5 && sides[1] > 5);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(jets_have_the_derivatives),
         cmocka_unit_test(ranges_contain_all_values),
         cmocka_unit_test(all_crossings_are_found_and_no_others),
+        cmocka_unit_test(more_crossings_than_fit_keep_the_parity),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,9 +1,12 @@
-/* A surface prepared for many evaluations at any place: its leaves (nodes with points), and the points of their
- * first levels, which tables on demand would make anew for each evaluation. Levels beyond those are made when they
- * are needed; at poles all levels are made. Optionally the surface is moved by a rigid motion.
+/* A surface prepared for many evaluations at any place: its leaves (nodes with points), and the
+ * points of their first levels, because tables on demand would make these points again for each
+ * evaluation. Levels beyond those are made when they are needed. At a pole (a vertex with ten or
+ * more faces) the points of all levels are kept, if they take at most 16 MiB and fit into the
+ * memory that kept_surface_init() may use. Optionally the surface is moved by a rigid motion.
  *
- * kept_surface_fill() may run for different leaves at the same time, everything else of kept_surface_init() and
- * kept_surface_finish() by one thread; a filled surface is read-only, and any thread may read it. */
+ * kept_surface_fill() may run for different leaves at the same time. One thread calls
+ * kept_surface_init() and kept_surface_finish(). A filled surface is read-only, and any thread may
+ * read it. */
 #ifndef SHEEN_CURVES_COMPARE_KEPT_SURFACE_H
 #define SHEEN_CURVES_COMPARE_KEPT_SURFACE_H
 
@@ -24,10 +27,11 @@ struct rigid_motion {
 struct kept_leaf {
     uint32_t node;
     uint32_t first_level; /* in kept_surface.levels */
-    uint8_t n_levels;     /* that are parts, from level 1 (or 0) on */
-    uint8_t n_kept;       /* levels whose points are kept: at least these */
-    float area;           /* estimated */
-    uint32_t corner;      /* of a CORNER: its number among these */
+    /* Number of levels that are parts, from level 1; 1 for a REGULAR node (level 0). */
+    uint8_t n_levels;
+    uint8_t n_kept;  /* number of levels whose points are kept, at least n_levels */
+    float area;      /* estimated */
+    uint32_t corner; /* only for a CORNER: its number among the CORNERs, from 0 */
 };
 
 struct kept_surface {
@@ -41,11 +45,14 @@ struct kept_surface {
     struct rigid_motion motion;
 };
 
-/* The most levels of a CORNER that are kept: what lies beyond them is 4^-KEPT_LEVELS of its area. */
+/* The most levels of a CORNER that are parts (kept_surface_parts()). The area beyond them is
+ * 4^-KEPT_LEVELS of the CORNER's area. At a pole the points of more levels may be kept. */
 enum { KEPT_LEVELS = 5 };
 
-/* Lists the leaves and makes room for their levels, in at most `most_bytes`: where these are few, fewer levels of
- * each leaf are kept. False with ERROR_SERVER when one level of each leaf does not fit. */
+/* Lists the leaves and makes room for their levels, in at most `most_bytes`. If `most_bytes` is too
+ * small for all levels, fewer levels of each CORNER are kept. Returns false with ERROR_SERVER if
+ * one level of each CORNER does not fit, or when memory is short; there is then nothing to
+ * finish. */
 bool kept_surface_init(struct kept_surface *surface, const struct limit_tables *tables,
                        size_t most_bytes, struct error *error);
 void kept_surface_finish(struct kept_surface *surface);
@@ -60,8 +67,9 @@ static inline const struct limit_node *kept_node(const struct kept_surface *surf
     return &surface->tables->nodes[surface->leaves[leaf].node];
 }
 
-/* The rectangles [x, x + width] x [y, y + height] of a leaf that its kept levels cover, one for each patch; the last
- * one of a CORNER is the rest about the vertex (is_rest), which consists of many patches. Returns their number. */
+/* The rectangles [x, x + width] x [y, y + height] of a leaf that its kept levels cover, one for
+ * each patch; the last one of a CORNER is the rest about the vertex (is_rest), which consists of
+ * many patches. Returns their number. */
 struct kept_part {
     double x, y, width, height;
     bool is_rest;
@@ -70,13 +78,14 @@ enum { KEPT_PARTS = 3 * KEPT_LEVELS + 1 };
 unsigned kept_surface_parts(const struct kept_surface *surface, size_t leaf,
                             struct kept_part parts[KEPT_PARTS]);
 
-/* Evaluates local (x,y) of a leaf, which may be a little beyond [0,1]; derivatives are by x and y. At (0,0) of a CORNER
- * that is the vertex (evaluate.h); nearer to it than its last level, that level's end. */
+/* Evaluates local (x,y) of a leaf, which may lie slightly outside [0,1]. Derivatives are by x and
+ * y. At (0,0) of a CORNER the result is the vertex (evaluate.h). Between the vertex and its last
+ * level, the result is the inner corner of the last level. */
 void kept_surface_evaluate(const struct kept_surface *surface, size_t leaf, double x, double y,
                            struct limit_point *out);
 
-/* The levels that evaluations have made last, because they are not kept: level n in slot n % MADE_LEVELS. It must not be
- * copied, because patches point into themselves. */
+/* The levels that evaluations have made last, because they are not kept: level n in slot n %
+ * MADE_LEVELS. It must not be copied, because patches point into themselves. */
 enum { MADE_LEVELS = 4 };
 struct made_levels {
     const struct limit_node
@@ -88,11 +97,12 @@ static inline void made_levels_init(struct made_levels *made)
     for (int k = 0; k < MADE_LEVELS; k++)
         made->node[k] = NULL;
 }
-/* As kept_surface_evaluate(); points of levels in `made` are not made again. */
+/* As kept_surface_evaluate(); points of levels in `made` are not made again. `made` may be NULL. */
 void kept_surface_evaluate_again(const struct kept_surface *surface, size_t leaf, double x,
                                  double y, struct made_levels *made, struct limit_point *out);
 
-/* The Bezier net in world coordinates of the patch that is a part of a leaf, and no rest: net[4 j + i]. */
+/* Gets the Bezier net, in world coordinates, of a part that is one patch (not the rest): net[4 j +
+ * i]. */
 void kept_surface_net(const struct kept_surface *surface, size_t leaf, const struct kept_part *part,
                       struct vec net[16]);
 
@@ -102,8 +112,8 @@ struct vec motion_turn(const struct rigid_motion *motion, struct vec v);
 void kept_surface_place(const struct kept_surface *surface, size_t leaf, double x, double y,
                         uint32_t *face, double uv[2]);
 
-/* True if local (x,y) of a leaf, within 1e-6 of a face, lies where the surface ends: at an edge of its face across
- * which there is no face, or a hole. */
+/* True if local (x,y) of a leaf, within 1e-6 of a face, lies where the surface ends: at an edge of
+ * its face across which there is no face, or a hole. */
 bool kept_surface_at_border(const struct kept_surface *surface, size_t leaf, double x, double y);
 
 #endif

@@ -1,6 +1,6 @@
-/* A patch of a surface as a polynomial in Bernstein form, in the patch's own parameters and relative to its node's
- * origin, so that patches near a vertex keep their digits. Of server/curves only bezier.c knows the degree of
- * patches. Pure, any thread. */
+/* A patch of a surface as a polynomial in Bernstein form, in the patch's own parameters and
+ * relative to its node's origin, so that patches near a vertex keep their digits. The degree is 3
+ * along u and along v. Pure, any thread. */
 #ifndef SHEEN_FIELDS_BEZIER_H
 #define SHEEN_FIELDS_BEZIER_H
 
@@ -16,7 +16,8 @@ struct bezier {
 void bezier_of_patch(struct bezier *bezier, const struct limit_tables *tables,
                      const struct limit_patch *patch);
 
-/* Position and normal, not of unit length, with their derivatives by u and v: rows value, by u, by v. */
+/* Position and normal, not of unit length, with their derivatives by u and v: rows value, by u, by
+ * v. */
 struct bezier_jet {
     struct vec s[3], n[3];
 };

@@ -101,6 +101,17 @@ static bool is_flat(const struct finding *finding)
 
 enum { MOST_PARTS = 400 };
 
+/* Beyond MOST_CROSSINGS the crossing and the one before it are left out: F has the same sign on
+ * both sides of the two. The recursion can come here with a full list, because each part that waits
+ * on its way adds a crossing. */
+static void add_crossing(struct finding *finding, double t)
+{
+    if (finding->n < MOST_CROSSINGS)
+        finding->at[finding->n++] = t;
+    else
+        finding->n--;
+}
+
 static void find_between(struct finding *finding, const struct segment *segment,
                          const struct field_range *terms, double a, double b,
                          const bool negative[2])
@@ -114,7 +125,7 @@ static void find_between(struct finding *finding, const struct segment *segment,
                     finding->n > MOST_CROSSINGS - 4 || (finding->n_parts == 1 && is_flat(finding));
     if (is_known) {
         if (differ)
-            finding->at[finding->n++] = only_crossing(finding, a, b, negative[0]);
+            add_crossing(finding, only_crossing(finding, a, b, negative[0]));
         return;
     }
     struct segment half[2];

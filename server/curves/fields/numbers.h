@@ -1,11 +1,13 @@
-/* Three kinds of numbers by which one formula is computed: a value with its derivatives, a range with ranges of its derivatives,
- * and a bound. A number is an array of doubles in a room of the caller. Pure, any thread, cannot fail. */
+/* Three kinds of numbers by which one formula is computed: a value with its derivatives, a range
+ * with ranges of its derivatives, and a bound. A number is an array of doubles in memory that the
+ * caller provides (struct number_room). Pure, any thread, cannot fail. */
 #ifndef SHEEN_FIELDS_NUMBERS_H
 #define SHEEN_FIELDS_NUMBERS_H
 
 #include <stddef.h>
 
-/* Memory for numbers, taken one after the other: there is no check. */
+/* Memory for numbers, taken one after the other. The caller makes it large enough for the formula;
+ * nothing checks this. */
 struct number_room {
     double *memory;
     size_t used;
@@ -30,15 +32,17 @@ extern const struct numbers NUMBERS_JET;
 /* An upper bound of the magnitude. */
 extern const struct numbers NUMBERS_BOUND;
 
-/* A function of x and y from -1 to 1, as a Taylor polynomial about (0,0) and bounds of the rest: a Taylor model (Makino and Berz
- * 1996) with bounds of the rest's derivatives too, because derivatives decide whether a line is a graph. The root of what may be 0
- * or less has an infinite rest. */
+/* A function of x and y from -1 to 1, as a Taylor polynomial about (0,0) and bounds of the rest: a
+ * Taylor model (Makino and Berz 1996) with bounds of the rest's derivatives too, because
+ * derivatives decide whether a line is a graph. The square root of a number that may be 0 or
+ * negative has an infinite rest. */
 extern const struct numbers NUMBERS_RANGE;
 
 enum { RANGE_ORDER = 3, RANGE_TERMS = (RANGE_ORDER + 1) * (RANGE_ORDER + 2) / 2 };
-/* The places in a range: of the coefficients in the order 1, x, y, xx, xy, yy, ...; of the sums of their magnitudes, degree by
- * degree, and of those of their derivatives by x and by y; of the bounds of the rest and of its derivatives by x and y;
- * and of how far the function differs from its value at (0,0) at most. */
+/* The places in a range: of the coefficients in the order 1, x, y, xx, xy, yy, ...; of the sums of
+ * their magnitudes, degree by degree, and of those of their derivatives by x and by y; of the
+ * bounds of the rest and of its derivatives by x and y; and of how far the function differs from
+ * its value at (0,0) at most. */
 enum {
     RANGE_SUM = RANGE_TERMS,
     RANGE_SUM_X = RANGE_SUM + RANGE_ORDER + 1,
@@ -66,7 +70,8 @@ void range_combine(const double factor[3], const double *const a[3], double out[
 /* 1 or -1 if all values of a range have this sign, else 0. */
 int range_sign(const double range[RANGE_SIZE]);
 
-/* The same for the derivative by x (axis 0) or y (axis 1), if it exceeds `noise`. */
+/* 1 or -1 if the derivative by x (axis 0) or y (axis 1) has this sign everywhere and its magnitude
+ * exceeds `noise`, else 0. */
 int range_slope_sign(const double range[RANGE_SIZE], int axis, double noise);
 
 #endif

@@ -1,13 +1,15 @@
-/* A square part of a patch: position and normal as polynomials in Bernstein form, whose coefficients bound their values. Pieces are
- * quartered. The normal is made once from the whole patch, and is a polynomial of the least degree from which lines can be found,
- * so that quarters keep all its digits, also where it nearly vanishes. Pure, any thread. */
+/* A square part of a patch: position and normal as polynomials in Bernstein form, whose
+ * coefficients bound their values. Pieces are quartered. The normal is computed once, from the
+ * whole patch, as the polynomial s_u x s_v of degree 5. Quarters are cut from that polynomial, so
+ * they keep all its digits, also where the normal nearly vanishes. Pure, any thread. */
 #ifndef SHEEN_FIELDS_PIECE_H
 #define SHEEN_FIELDS_PIECE_H
 
 #include "server/curves/fields/bezier.h"
 #include "server/curves/fields/numbers.h"
 
-/* Degrees along each parameter, and numbers of coefficients. Coefficient (i, j), i along u and j along v, is at i (degree + 1) + j. */
+/* Degrees along each parameter, and numbers of coefficients. Coefficient (i, j), i along u and j
+ * along v, is at i (degree + 1) + j. */
 enum { POSITION_DEGREE = 3, NORMAL_DEGREE = 5 };
 enum {
     POSITION_SIZE = (POSITION_DEGREE + 1) * (POSITION_DEGREE + 1),
@@ -38,13 +40,14 @@ struct segment {
 
 /* Sides 0 to 3 are v = 0, u = 1, v = 1, u = 0, each run through counter-clockwise. */
 void piece_side(const struct piece *piece, int side, struct segment *segment);
-/* The same of the whole patch, without a piece. */
+/* Side `side` of the whole patch, as piece_side() gives it for a piece. */
 void segment_of_bezier(const struct bezier *bezier, int side, struct segment *segment);
 void segment_reverse(struct segment *segment);
 void segment_halve(const struct segment *segment, struct segment half[2]);
 
-/* Position and normal as numbers of NUMBERS_RANGE. The normal is divided by its part along the unit normal in the middle: so its
- * length, which varies much more than its direction, widens no range. Those of a segment depend on x alone, which runs along it. */
+/* Position and normal as numbers of NUMBERS_RANGE. The normal is divided by its component along the
+ * unit normal in the middle, because its length varies much more than its direction and would widen
+ * the ranges. A segment's numbers depend on x alone; x runs along the segment. */
 struct piece_range {
     double s[3][RANGE_SIZE], n[3][RANGE_SIZE];
 };

@@ -5,11 +5,15 @@
 
 #include "server/surface/vec.h"
 
-/* Normals that differ by less are equal: in files with 16 digits they are, and the tables' single precision has no more. */
+/* Normals that differ by less are equal: in files with 16 digits they are, and the tables' single
+ * precision has no more. */
 #define EQUAL_RAD 1e-6
-/* Curvatures that differ by less, relative to the larger one, are equal: the tables' rounding makes up to 2e-3. */
+/* Curvatures that differ by less, relative to the larger one, are equal. They are compared in
+ * double precision by the file's own points, and not by those of the tables, whose rounding makes
+ * up to 2e-3. */
 #define EQUAL_CURVATURE 1e-4
-/* A side whose radius is above 1000 times the curve's length counts as flat (server/curves/README.md, Breaks). */
+/* A side whose radius is above 1000 times the curve's length counts as flat
+ * (server/curves/README.md, Breaks). */
 #define FLAT 1e-3
 
 /* One side of a place on the curve. */
