@@ -1,6 +1,6 @@
-/* libsheen: exact reflection lines on subdivision surfaces, rendered by a daemon (sheend), for
- * programs in C11 and C++17. Programs include this header. It consists of the headers in the folder
- * sheen, one for each task, to which the rules below apply.
+/* libsheen: exact reflection lines on subdivision surfaces and on bicubic patches, rendered by a
+ * daemon (sheend), for programs in C11 and C++17. Programs include this header. It consists of the
+ * headers in the folder sheen, one for each task, to which the rules below apply.
  *
  *     struct sheen_error error;
  *     struct sheen_connect_options options = SHEEN_CONNECT_DEFAULTS; // a private daemon
@@ -12,11 +12,12 @@
  *
  *     if (sheen_read_file(SHEEN_FILE_MODEL, "hood.obj", &bytes, &n_bytes, &error))
  *         return show(error.text);
- *     sheen_file_id(bytes, n_bytes, request.model_id);
- *     if (sheen_connect(&session, &options, &error) ||
- *         sheen_upload(session, SHEEN_FILE_MODEL, request.model_id, bytes, n_bytes, "hood.obj",
- *                      NULL, &error) ||
- *         sheen_render(session, &request, NULL, &frame, &error))
+ *     if (!sheen_file_id(bytes, n_bytes, request.model_id))
+ *         show("libcrypto failed");
+ *     else if (sheen_connect(&session, &options, &error) ||
+ *              sheen_upload(session, SHEEN_FILE_MODEL, request.model_id, bytes, n_bytes,
+ *                           "hood.obj", NULL, &error) ||
+ *              sheen_render(session, &request, NULL, &frame, &error))
  *         show(error.text);
  *     else
  *         fwrite(frame.data, 1, frame.data_bytes, out);

@@ -1,5 +1,5 @@
-/* What all headers of libsheen need: what a call returns, the version, and the id of a file. sheen.h has
- * the rules. */
+/* What all headers of libsheen need: what a call returns, the version, and the id of a file.
+ * sheen.h has the rules. */
 #ifndef SHEEN_PUBLIC_BASE_H
 #define SHEEN_PUBLIC_BASE_H
 
@@ -34,6 +34,7 @@ enum sheen_status {
     SHEEN_BAD_IMAGE,     /* an image is bad, or a file cannot be written exit code 3 */
     SHEEN_TOO_BIG,       /* the file exceeds the daemon's limit          exit code 3 */
     SHEEN_UNKNOWN_MODEL, /* the daemon does not have the file: upload it exit code 4 */
+    /* Not fatal. From sheen_connect() there is no session either way: connect again. */
     SHEEN_OVERLOADED,    /* the daemon is full: try later                exit code 4 */
     SHEEN_SUPERSEDED,    /* a newer request of the same view replaced it exit code 4 */
     SHEEN_CANCELLED,     /* cancelled by sheen_cancel()                  exit code 4 */
@@ -55,7 +56,7 @@ struct sheen_error {
     char text[640]; /* one line of UTF-8 without newline: what failed, where, and what to do */
 };
 
-/* The version of the library and of the protocol: "0.1.0, protocol 1.3". A static string. */
+/* The version of the library and of the protocol: "0.1.0, protocol 1.5". A static string. */
 const char *sheen_version(void);
 
 /* The exit code with which the `sheen` command ends after this status: 0, 2, 3, 4 or 5. */

@@ -13,12 +13,13 @@
 
 SHEEN_DECLARATIONS_BEGIN
 
-/* An edge is out of tolerance where it exceeds one of these; 0: the default. */
+/* An edge is out of tolerance where it exceeds one of these; 0: the default. Ranges: gap above 0 to
+ * 1e30; angle_deg above 0 to 180; curvature_percent above 0 to 200. */
 struct sheen_break_limits {
     size_t size;
     double gap;       /* units of the file; default: 1e-5 of the diagonal of the model's box */
-    double angle_deg; /* between the normals of both sides, at most 180; default: 0.1 */
-    double curvature_percent; /* jump of the curvature, at most 200; default: 10 */
+    double angle_deg; /* between the normals of both sides; default: 0.1 */
+    double curvature_percent; /* jump of the curvature; default: 10 */
 };
 #define SHEEN_BREAK_LIMITS_DEFAULTS                                                                \
     ((struct sheen_break_limits){.size = sizeof(struct sheen_break_limits)})
@@ -26,9 +27,9 @@ struct sheen_break_limits {
 enum sheen_break_kind {
     SHEEN_BREAK_CREASE,    /* an infinitely sharp crease */
     SHEEN_BREAK_SEMISHARP, /* a crease of finite sharpness: smooth, and never out of tolerance */
-    /* Two border edges that lie together: vertices that the file does not join, or two faces of an
-     * edge with more than two. Or a common curve of two patches across which only the curvature
-     * jumps. */
+    /* Two border edges that lie together, because the file does not join their vertices or because
+     * an edge has more than two faces; or a common curve of two patches across which only the
+     * curvature jumps. */
     SHEEN_BREAK_JOINT,
 };
 
@@ -58,7 +59,7 @@ struct sheen_break_edge {
     bool has_dart;                   /* the crease ends at one of its vertices */
     uint32_t kink_light, jump_light; /* lights for which kink and jump are the worst, from 0 */
     double length, out_length;       /* units: of the edge; of its part out of tolerance */
-    double shift;                    /* units: the jump as a length on the surface; NAN: none */
+    double shift; /* units: the jump of the lines, as a length on the surface; NAN: unknown */
     struct sheen_break_worst worst[SHEEN_N_BREAK_MEASURES];
 };
 
@@ -82,30 +83,34 @@ struct sheen_breaks {
     const struct sheen_break_vertex *vertices;
     uint32_t n_out; /* edges out of tolerance: the first ones */
     uint32_t n_creases, n_semisharp, n_joints;
-    uint32_t n_borders;                       /* edges with a face on one side */
-    double gap, angle_deg, curvature_percent; /* limits that were used */
-    double creases_length, borders_length, out_length;
-    double diagonal;            /* of the model's box */
-    struct sheen_camera camera; /* that were used */
+    uint32_t n_borders;                                /* edges with a face on one side */
+    double gap, angle_deg, curvature_percent;          /* limits that were used */
+    double creases_length, borders_length, out_length; /* units */
+    double diagonal;                                   /* of the model's box, units */
+    /* The camera, lines and lights that were used. */
+    struct sheen_camera camera;
     struct sheen_lines lines;
     uint32_t n_lights;
     struct sheen_light lights[SHEEN_MAX_LIGHTS];
-    uint64_t total_us;
-    char server[32];
+    uint64_t total_us; /* from the request's last byte to the answer's first */
+    char server[32];   /* the daemon's version */
 };
 #define SHEEN_BREAKS_DEFAULTS ((struct sheen_breaks){.size = sizeof(struct sheen_breaks)})
 
 /* Finds where the lines of request's model break, in double precision on the surface itself. Of the
- * request, model, camera, lines, lights and deadline_ms count; lights of images need no image.
- * `limits` may be NULL. protocol/README.md, chapter 10, and server/curves/README.md define all
- * measures. SHEEN_BAD_ARGUMENT while requests are in flight, or with a daemon that is too old. */
+ * request, model, camera, lines, lights and deadline_ms count; the image of an image pattern need
+ * not be uploaded. `limits` and `progress` may be NULL. protocol/README.md, chapter 10, and
+ * server/curves/README.md define all measures. SHEEN_BAD_ARGUMENT while requests are in flight, or
+ * with a daemon that is too old. If the request was not sent (SHEEN_BAD_ARGUMENT, or a session that
+ * had failed before) *breaks is unchanged; after another failure it is empty. */
 enum sheen_status sheen_find_breaks(struct sheen_session *session,
                                     const struct sheen_request *request,
                                     const struct sheen_break_limits *limits,
                                     const struct sheen_progress *progress,
                                     struct sheen_breaks *breaks, struct sheen_error *error);
 
-/* Frees the memory of a result and zeroes it except for its size. NULL and a zeroed one are safe. */
+/* Frees the memory of a result and zeroes it except for its size. NULL and a zeroed one are
+ * safe. */
 void sheen_breaks_finish(struct sheen_breaks *breaks);
 
 static inline struct sheen_break_limits sheen_break_limits_defaults(void)

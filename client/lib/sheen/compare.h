@@ -26,11 +26,15 @@ enum sheen_compare_measure {
 struct sheen_compare_options {
     size_t size;
     uint8_t new_id[SHEEN_ID_BYTES]; /* the model that is compared with the request's */
-    /* Beyond it an area is out of tolerance. 0: the default: 1e-5 of the diagonal of the old model's
-     * box; 0.05; 0.1; none; and curvature is not compared. */
+    /* An area where a measure exceeds its limit is out of tolerance. 0 takes the default. Distance:
+     * 1e-5 of the diagonal of the old model's box, above 0 to 1e30. Normal: 0.05, above 0 to 180.
+     * Lines: 0.1, above 0 to 1e6. Line length: no limit, above 0 to 1e30. Curvature: not compared,
+     * above 0 to 2. */
     double limits[SHEEN_N_COMPARE_MEASURES];
-    bool align;       /* move the new surface onto the old one first */
-    uint32_t samples; /* of both surfaces together, about, 1000 to 100000000; 0: a million */
+    bool align; /* move the new surface onto the old one first */
+    /* Number of samples of both surfaces together, approximately: 1000 to 100000000, or more if
+     * there are more patches; 0: a million. */
+    uint32_t samples;
 };
 #define SHEEN_COMPARE_OPTIONS_DEFAULTS                                                             \
     ((struct sheen_compare_options){.size = sizeof(struct sheen_compare_options)})
@@ -67,30 +71,35 @@ struct sheen_comparison {
     struct sheen_compared_side sides[2]; /* the old surface's samples, and the new one's */
     bool is_rewound; /* the new surface as a whole is wound the other way around */
     bool is_aligned;
-    /* With is_aligned: in how many independent directions (of 6, shifts and rotations) the new surface
-     * slides along itself, as a plane does in 3: they were left as they are. */
+    /* With is_aligned: in how many independent directions (of 6, shifts and rotations) the new
+     * surface slides along itself, as a plane does in 3. The new surface was not moved in these
+     * directions. */
     uint32_t free_directions;
-    double diagonal; /* of the old model's box */
-    /* What equal surfaces of different files differ by: tables are in single precision. */
+    double diagonal; /* of the old model's box, units */
+    /* Differences up to these values (units; degrees) occur between equal surfaces from different
+     * files, because of rounding. */
     double distance_floor, normal_floor_deg;
     double limits[SHEEN_N_COMPARE_MEASURES]; /* that were used; INFINITY: none */
-    /* With is_aligned: the motion of the new surface, a rotation row by row and then a shift; the
-     * rotation's angle; and the root mean square of the distances before and after. */
+    /* With is_aligned: the motion of the new surface, a rotation row by row and then a shift in
+     * units; the rotation's angle; and the root mean square of the distances before and after, in
+     * units. */
     double rotation[9], shift[3], rotation_deg, rms_before, rms_after;
-    struct sheen_camera camera; /* that were used */
+    /* The camera, lines and lights that were used. */
+    struct sheen_camera camera;
     struct sheen_lines lines;
     uint32_t n_lights;
     struct sheen_light lights[SHEEN_MAX_LIGHTS];
-    uint64_t total_us;
-    char server[32];
+    uint64_t total_us; /* from the request's last byte to the answer's first */
+    char server[32];   /* the daemon's version */
 };
 #define SHEEN_COMPARISON_DEFAULTS                                                                  \
     ((struct sheen_comparison){.size = sizeof(struct sheen_comparison)})
 
 /* Compares request's model, the old one, with options->new_id, in double precision on the surfaces
- * themselves. Of the request, model, camera, lines, lights and deadline_ms count; lights of images
- * need no image. protocol/README.md, chapter 10. SHEEN_BAD_ARGUMENT while requests are in flight, or
- * with a daemon that is too old. */
+ * themselves. Of the request, model, camera, lines, lights and deadline_ms count; the image of an
+ * image pattern need not be uploaded. protocol/README.md, chapter 10. SHEEN_BAD_ARGUMENT while
+ * requests are in flight, or with a daemon that is too old. `options` must not be NULL; `progress`
+ * may be NULL. On failure *comparison is unchanged. */
 enum sheen_status sheen_compare(struct sheen_session *session, const struct sheen_request *request,
                                 const struct sheen_compare_options *options,
                                 const struct sheen_progress *progress,

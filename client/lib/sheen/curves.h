@@ -15,11 +15,12 @@ SHEEN_DECLARATIONS_BEGIN
 
 struct sheen_curve_options {
     size_t size;
-    /* Greatest distance of a curve from its chords, units of the file; 0: 1e-5 of the diagonal of the
-     * model's box. */
+    /* Greatest distance of a curve from its chords, units of the file: at least 1e-9 of the
+     * diagonal of the model's box, at most 1e30; 0: 1e-5 of the diagonal. */
     double tolerance;
-    /* Places of lines on each light, as `at` of a pattern of lines; 0: those of the lights' patterns
-     * (of stripes and lattices the middle of each bright stripe). */
+    /* Places of lines on each light, as `at` of a pattern of lines: at most SHEEN_MAX_CURVE_PLACES,
+     * each from -1e6 to 1e6; 0: those of the lights' patterns (of stripes and lattices the middle
+     * of each bright stripe). */
     uint32_t n_at;
     const double *at;
     bool silhouettes; /* those of the line eye, instead of lines */
@@ -69,27 +70,33 @@ struct sheen_curves {
     uint64_t n_points;                /* of all curves */
     const struct sheen_curve *curves; /* in the order of lines */
     const struct sheen_curve_mark *marks;
-    double tolerance, diagonal; /* as used; of the model's box */
-    struct sheen_camera camera; /* that were used */
+    double tolerance, diagonal; /* units: as used; of the model's box */
+    /* The camera, lines and lights that were used. */
+    struct sheen_camera camera;
     struct sheen_lines lines;
     uint32_t n_lights;
     struct sheen_light lights[SHEEN_MAX_LIGHTS];
-    uint64_t total_us;
-    char server[32];
+    uint64_t total_us; /* from the request's last byte to the answer's first */
+    char server[32];   /* the daemon's version */
 };
 #define SHEEN_CURVES_DEFAULTS ((struct sheen_curves){.size = sizeof(struct sheen_curves)})
 
 /* Traces the lines of request's lights on the surface as curves, none of which is lost. Of the
- * request, model, camera, lines, lights and deadline_ms count. `options` may be NULL.
- * protocol/README.md, chapter 10, and server/curves/README.md say how curves are found.
- * SHEEN_BAD_ARGUMENT while requests are in flight, or with a daemon that is too old. */
+ * request, model, camera, lines, lights and deadline_ms count. `options` and `progress` may be
+ * NULL. protocol/README.md, chapter 10, and server/curves/README.md say how curves are found.
+ * SHEEN_BAD_ARGUMENT while requests are in flight, with a daemon that is too old, or if `at` is
+ * given for silhouettes. SHEEN_BAD_REQUEST if the tolerance is too small for the model, or if the
+ * lines of a pattern cannot be traced because of its rotation. If the request was not sent
+ * (SHEEN_BAD_ARGUMENT, or a session that had failed before) *curves is unchanged; after another
+ * failure it is empty. */
 enum sheen_status sheen_trace_lines(struct sheen_session *session,
                                     const struct sheen_request *request,
                                     const struct sheen_curve_options *options,
                                     const struct sheen_progress *progress,
                                     struct sheen_curves *curves, struct sheen_error *error);
 
-/* Frees the memory of a result and zeroes it except for its size. NULL and a zeroed one are safe. */
+/* Frees the memory of a result and zeroes it except for its size. NULL and a zeroed one are
+ * safe. */
 void sheen_curves_finish(struct sheen_curves *curves);
 
 static inline struct sheen_curve_options sheen_curve_options_defaults(void)

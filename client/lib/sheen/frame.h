@@ -71,7 +71,8 @@ struct sheen_frame {
 };
 #define SHEEN_FRAME_DEFAULTS ((struct sheen_frame){.size = sizeof(struct sheen_frame)})
 
-/* Renders one frame: sheen_send(), then sheen_receive(). */
+/* Renders one frame: sheen_send(), then sheen_receive(). SHEEN_BAD_ARGUMENT while requests are in
+ * flight. `progress` may be NULL. */
 enum sheen_status sheen_render(struct sheen_session *session, const struct sheen_request *request,
                                const struct sheen_progress *progress, struct sheen_frame *frame,
                                struct sheen_error *error);

@@ -1,4 +1,5 @@
-/* What the daemon knows about a model: its cage, its cost, and probable mistakes. sheen.h has the rules. */
+/* What the daemon knows about a model: its cage, its cost, and probable mistakes. sheen.h has the
+ * rules. */
 #ifndef SHEEN_PUBLIC_MODEL_H
 #define SHEEN_PUBLIC_MODEL_H
 
@@ -13,8 +14,9 @@ SHEEN_DECLARATIONS_BEGIN
 
 /* Properties of a model that are probably mistakes. `warnings` describes each in words. */
 enum sheen_finding_kind {
-    SHEEN_FINDING_REPEATED_CORNER, /* faces with a corner equal to the next one, which is dropped */
-    SHEEN_FINDING_FEW_CORNERS,     /* faces left out: fewer than three different corners */
+    /* Faces with two equal corners in a row, of which the second is dropped. */
+    SHEEN_FINDING_REPEATED_CORNER,
+    SHEEN_FINDING_FEW_CORNERS, /* faces left out: fewer than three different corners */
     /* Faces left out: a vertex occurs at two corners that are not adjacent. */
     SHEEN_FINDING_KEYHOLE,
     SHEEN_FINDING_CREASE_WITHOUT_EDGE,   /* creases left out: no such edge */
@@ -74,7 +76,9 @@ struct sheen_model_info {
 #define SHEEN_MODEL_INFO_DEFAULTS                                                                  \
     ((struct sheen_model_info){.size = sizeof(struct sheen_model_info)})
 
-/* Describes an uploaded model and its cost. Builds the model's tables if needed. */
+/* Describes an uploaded model and its cost. Builds the model's tables if needed. SHEEN_BAD_ARGUMENT
+ * while requests are in flight; SHEEN_UNKNOWN_MODEL if the daemon does not have the model. *info is
+ * unchanged on failure. */
 enum sheen_status sheen_query_model(struct sheen_session *session, const uint8_t id[SHEEN_ID_BYTES],
                                     const struct sheen_progress *progress,
                                     struct sheen_model_info *info, struct sheen_error *error);

@@ -1,4 +1,5 @@
-/* A request: the scene, what is drawn of it, and in which form the frame comes. sheen.h has the rules. */
+/* A request: the scene, what is drawn of it, and in which form the frame comes. sheen.h has the
+ * rules. */
 #ifndef SHEEN_PUBLIC_REQUEST_H
 #define SHEEN_PUBLIC_REQUEST_H
 
@@ -81,11 +82,11 @@ enum sheen_class {
     SHEEN_CLASS_BATCH, /* nobody waits; never replaced by a newer request */
 };
 
-/* A frame that shows a part of a picture: the place of the frame's top left corner in the picture, and
- * the picture's size, for which the camera is. The part must be inside. All 0: the frame is the whole
- * picture. */
+/* A frame that shows a part of a picture: the place of the frame's top left corner in the picture,
+ * and the picture's size, for which the camera is. The part must be inside. All 0: the frame is the
+ * whole picture. */
 struct sheen_window {
-    double x_px, y_px;            /* from 0; not only whole numbers */
+    double x_px, y_px;            /* 0 to 65535; not only whole numbers */
     uint32_t width_px, height_px; /* 1 to 65536; the device's limits do not matter */
 };
 
@@ -105,7 +106,8 @@ struct sheen_request {
     /* One sample of surface and pattern for each pixel, for comparison. Includes `aliased`. */
     bool unfiltered;
     /* One sample of the surface for each pixel: edges are not antialiased and there is no coverage
-     * plane. Patterns are still averaged over the pixel. SHEEN_BAD_ARGUMENT with an older daemon. */
+     * plane. Patterns are still averaged over the pixel. SHEEN_BAD_ARGUMENT with an older
+     * daemon. */
     bool aliased;
     struct sheen_show show; /* not with SHEEN_SURFACE_WIREFRAME */
     uint32_t planes;        /* bits of enum sheen_plane */

@@ -46,11 +46,11 @@ struct sheen_camera {
     double zoom;          /* magnification with the same eye, 1 to 1e6; 0: none */
     /* The place of the picture that is magnified: x from the left and y from the top, 0 to 1. */
     double zoom_at[2];
-    double eye[3], target[3]; /* must differ */
+    double eye[3], target[3]; /* must differ; all coordinates are -1e30 to 1e30 */
     /* Not parallel to the line of sight; need not be perpendicular to it. */
     double up[3];
     double fov_deg;      /* perspective: vertical field of view, 1e-6 to 179 */
-    double ortho_height; /* orthographic: height of the picture in units, > 0 */
+    double ortho_height; /* orthographic: height of the picture in units, above 0 to 1e30 */
 };
 
 #define SHEEN_MAX_LIGHTS 8
@@ -71,17 +71,18 @@ struct sheen_pattern {
     enum sheen_pattern_kind kind;
     /* Periods across the light's width, above 0, at most 100000. */
     double count;
-    /* Length of a period in the light's units, > 0; 0: `count` decides. */
+    /* Length of a period in the light's units, 1e-18 to 1e18; 0: `count` decides. */
     double period;
     double duty;                 /* bright share of a period, 0 to 1 */
-    double rotation_deg, offset; /* rotation; offset in periods */
+    double rotation_deg, offset; /* rotation; offset in periods; each -1e6 to 1e6 */
     /* Width of each soft edge, as a share of a period (SHEEN_PATTERN_LINES: of the line's width), 0
      * to 1. */
     double soft;
     double opacity; /* opacity over the shaded surface, 0 to 1 */
     /* SHEEN_PATTERN_LINES: number of lines, 1 to SHEEN_MAX_LINES; else 0. */
     uint32_t n_at;
-    /* SHEEN_PATTERN_LINES: place and width of the lines, in widths of the light. */
+    /* SHEEN_PATTERN_LINES: place (-1e6 to 1e6) and width (above 0 to 1) of the lines, in widths of
+     * the light. */
     double at[SHEEN_MAX_LINES], width;
     bool has_colours;                   /* false: white on black */
     float foreground[4], background[4]; /* RGBA in [0, 1], as displayed */
@@ -110,7 +111,7 @@ struct sheen_light {
     /* False: the daemon places the light about the model, and centre, u and v are ignored. */
     bool is_placed;
     bool one_sided; /* rectangle and plane: seen only by rays that run against u x v */
-    double centre[3], u[3], v[3];
+    double centre[3], u[3], v[3]; /* u and v: of length 1e-18 to 1e18, and not parallel */
     struct sheen_pattern pattern;
 };
 

@@ -56,7 +56,7 @@ void sheen_connect_options_init(struct sheen_connect_options *options, size_t si
  *   SHEEN_NO_SERVER      cannot connect, or cannot start a private daemon
  *   SHEEN_LOST_SERVER    the daemon closed the connection, or the private daemon ended at once
  *   SHEEN_DEVICE_FAILED  the private daemon found no usable device
- *   SHEEN_BAD_PEER, SHEEN_BAD_VERSION, SHEEN_TIMEOUT, SHEEN_OVERLOADED
+ *   SHEEN_BAD_PEER, SHEEN_BAD_VERSION, SHEEN_TIMEOUT, SHEEN_OVERLOADED, SHEEN_NO_MEMORY
  *
  * A private daemon is a child process on a socket pair. Its program is $SHEEN_DAEMON, else `sheend`
  * in the folder of the running program, else `sheend` on the PATH. It ends when the session is
@@ -93,9 +93,10 @@ enum sheen_status sheen_get_server(const struct sheen_session *session, struct s
  * failed. */
 int sheen_descriptor(const struct sheen_session *session, short *events);
 
-/* report() is called during long calls: for uploads with the stage "upload" and bytes, else with a
- * stage that the daemon reports, such as "tables" with faces. `done` may reach `total`. It must not
- * call functions with the session. */
+/* report() is called during long calls, by the thread that made the call: for uploads with the
+ * stage "upload" and bytes, else with a stage that the daemon reports, such as "tables" with faces.
+ * `done` may reach `total`; `total` is 0 where it is not known. report() must not call functions
+ * with the session. Every `progress` argument may be NULL. */
 struct sheen_progress {
     void (*report)(void *context, const char *stage, uint64_t done, uint64_t total);
     void *context;

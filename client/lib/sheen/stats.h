@@ -24,8 +24,10 @@ struct sheen_stats {
     uint32_t sessions, queued; /* now */
     uint64_t frames, errors;   /* since the start */
     uint32_t models, images;   /* in the daemon's memory now */
-    uint64_t model_bytes; /* memory of the models' tables, where sheen_model_info.table_bytes are */
-    uint64_t uploads_bytes, sent_bytes;
+    /* Bytes of the models' tables, in the memory in which sheen_model_info.table_bytes are counted:
+     * of the device, or main memory where processors draw. */
+    uint64_t model_bytes;
+    uint64_t uploads_bytes, sent_bytes;   /* sums since the start */
     uint64_t superseded, cancelled, late; /* requests with this answer since the start */
     /* Clients disconnected for exceeding a limit or breaking the protocol. */
     uint64_t disconnected;
@@ -43,8 +45,8 @@ struct sheen_stats {
     bool software;
     uint32_t threads; /* threads that draw without a GPU; 0: a GPU, or unknown */
     /* The daemon's memory budget, and what holds it: models and images; what is being received;
-     * frames, and computations, by class; what frames are drawn on; memory kept for the next frames;
-     * what is set aside for the daemon itself. All 0 if the daemon is too old to tell. */
+     * frames, and computations, by class; what frames are drawn on; memory kept for the next
+     * frames; what is set aside for the daemon itself. All 0 if the daemon is too old to tell. */
     uint64_t budget_bytes;
     uint64_t assets_bytes, input_bytes, interactive_bytes, patient_bytes;
     uint64_t device_bytes, spare_bytes, daemon_bytes;
