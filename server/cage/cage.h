@@ -1,6 +1,6 @@
-/* A model as data: a control cage, which is vertices, faces and subdivision tags, or patches, as read from a file. Readers
- * remove damaged elements (build/repair.h), and join vertices at equal positions where the format
- * or the user says so (build/weld.h).
+/* A model as data: a control cage, which is vertices, faces and subdivision tags, or patches, as
+ * read from a file. Readers remove damaged elements (build/repair.h), and join vertices at equal
+ * positions where the format or the user says so (build/weld.h).
  *
  * A cage is plain memory; its owner frees it by cage_finish(). Nothing is evaluated here:
  * server/surface builds the limit surface. All indices count from 0 and have been checked by
@@ -119,9 +119,10 @@ struct cage {
 void cage_finish(struct cage *cage);
 
 /* Checks that every index is in range, every face has 3 or more different corners, every coordinate
- * is finite and within CAGE_MAX_COORDINATE, there are faces or patches but not both, counts are within limits, sharpness is
- * finite and at least 0, creases lie on edges, and patches have a known basis. False with ERROR_MODEL, which names `name` and
- * the element, or with ERROR_SERVER when memory is short. */
+ * is finite and within CAGE_MAX_COORDINATE, there are faces or patches but not both, counts are
+ * within limits, sharpness is finite and at least 0, creases lie on edges, and patches have a known
+ * basis. False with ERROR_MODEL, which names `name` and the element, or with ERROR_SERVER when
+ * memory is short. */
 bool cage_check(const struct cage *cage, const char *name, struct error *error);
 
 /* Appends one line to cage->warnings. When they are full, their last line says that more warnings

@@ -1,4 +1,4 @@
-/* The jobs that the worker program sheend-image runs. */
+/* The jobs that the worker program sheend-image runs. Constant data, any thread. */
 #ifndef SHEEN_SANDBOX_IMAGE_TASKS_H
 #define SHEEN_SANDBOX_IMAGE_TASKS_H
 

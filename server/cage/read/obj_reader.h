@@ -47,10 +47,12 @@ bool obj_fail(const struct obj_reader *reader, const char *format, ...)
 /* Parses v, v/t, v//n or v/t/n. Texture and normal indices must be numbers, but are not used. */
 bool obj_scan_corner(const struct obj_field *field, int64_t *vertex);
 
-/* Read the rest of a line with a keyword of free-form surfaces (Wavefront's OBJ 3.0: cstype, deg, surf, parm, trim, hole, end), and set
- * *is_known to whether it is one. False with ERROR_MODEL, which names what sheen does not draw. */
+/* Read the rest of a line with a keyword of free-form surfaces (Wavefront's OBJ 3.0: cstype, deg,
+ * surf, parm, trim, hole, end), and set *is_known to whether it is one. False with ERROR_MODEL,
+ * which names what sheen does not draw. */
 bool obj_read_surface(struct obj_reader *reader, const struct obj_field *keyword, bool *is_known);
-/* At the end of the file: false with ERROR_MODEL if a surface has no end, or if there are faces, too. */
+/* At the end of the file: false with ERROR_MODEL if a surface has no end, or if there are faces,
+ * too. */
 bool obj_end_surfaces(struct obj_reader *reader);
 void obj_surface_finish(struct obj_surface *surface);
 

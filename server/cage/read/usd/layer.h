@@ -43,13 +43,15 @@ struct usd_property {
     enum usd_property_kind kind;
     enum usd_source source;
     struct usd_token name; /* without ".timeSamples"; its line is that of the property */
-    struct usd_text value; /* where the value begins; neither None nor [] */
-    uint32_t next;         /* the prim's next property; USD_NONE: there is none */
+    /* Where the value begins; a property whose value is None or [] is not stored. */
+    struct usd_text value;
+    uint32_t next; /* the prim's next property; USD_NONE: there is none */
 };
 
 #define USD_NONE UINT32_MAX
 
-/* What makes a prim depend on other places, and is refused: words for the message. */
+/* A composition arc of a prim (such as a reference), which takes content from elsewhere and is
+ * refused: words for the message. */
 struct usd_arc {
     const char *what; /* NULL: nothing */
     uint32_t line;
@@ -61,7 +63,7 @@ struct usd_prim {
     struct usd_token type; /* of length 0 if it has none */
     uint32_t depth;        /* 0 for a prim that is in no other */
     uint32_t first_property, last_property;
-    struct usd_arc arc; /* the first of the prim */
+    struct usd_arc arc; /* the prim's first arc */
 };
 
 struct usd_layer {
@@ -83,17 +85,17 @@ bool usd_layer_read(struct usd_layer *layer, struct usd_text *text);
 void usd_layer_finish(struct usd_layer *layer);
 
 /* Adds the property whose name was read from the text, and reads its value, if it is one that makes
- * a cage; else skips the value. `prim` NULL: skips the value in any case. Part of
- * usd_layer_read(). */
+ * a cage; else skips the value. `prim` NULL: skips the value in any case. False with ERROR_MODEL,
+ * or with ERROR_SERVER when memory is short. Part of usd_layer_read(). */
 bool usd_layer_property(struct usd_layer *layer, struct usd_prim *prim, struct usd_text *text,
                         const struct usd_token *name);
 
-/* Reads "( ... )" after a prim, if it follows. *is_active changes if it has `active`. Part of
- * usd_layer_read(). */
+/* Reads "( ... )" after a prim, if it follows. *is_active changes if it has `active`. False with
+ * ERROR_MODEL. Part of usd_layer_read(). */
 bool usd_prim_metadata(struct usd_text *text, struct usd_arc *arc, bool *is_active);
 
-/* Reads "( ... )" after the header of the file, if it follows. Refuses sublayers. Part of
- * usd_layer_read(). */
+/* Reads "( ... )" after the header of the file, if it follows. Refuses sublayers. False with
+ * ERROR_MODEL. Part of usd_layer_read(). */
 bool usd_layer_metadata(struct usd_layer *layer, struct usd_text *text);
 
 #endif

@@ -17,7 +17,7 @@ struct usd_mesh {
     /* Where the mesh begins in the builder. */
     size_t first_vertex, first_face;
     bool has_triangle;  /* set by usd_add_mesh() */
-    bool *has_negative; /* set if a sharpness is below 0 */
+    bool *has_negative; /* set if a sharpness is below 0; never NULL, never cleared */
 };
 
 /* Adds points, faces and tags. A tag of a vertex or face that the mesh does not have gets the index

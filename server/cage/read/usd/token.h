@@ -50,8 +50,8 @@ struct usd_token {
  * does not end. At the end of the file every call gives USD_END. */
 bool usd_next(struct usd_text *text, struct usd_token *token);
 
-/* Reads the next token if it is this sign. *is tells whether it was; if not, only blanks are
- * skipped. False as usd_next(). */
+/* Reads the next token if it is `sign`, and then sets *is to true. Otherwise sets *is to false and
+ * skips only blanks. False as usd_next(). */
 bool usd_next_is(struct usd_text *text, char sign, bool *is);
 
 /* Reads a sign that must follow; `what` says after what, for the message. */

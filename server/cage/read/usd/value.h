@@ -22,11 +22,12 @@ bool usd_skip_metadata(struct usd_text *text);
 /* A finite number. */
 bool usd_number(struct usd_text *text, const char *what, double *number);
 
-/* A sharpness, at least 0. Infinity becomes CAGE_SHARPNESS_INFINITE; *is_negative is set for a
- * number below 0, which becomes 0, and else unchanged. */
+/* Reads a sharpness. Infinity becomes CAGE_SHARPNESS_INFINITE. A negative number becomes 0 and sets
+ * *is_negative; otherwise *is_negative is unchanged. */
 bool usd_sharpness(struct usd_text *text, const char *what, float *sharpness, bool *is_negative);
 
-/* A whole number; one beyond 10^12 in magnitude becomes 10^12 or more in magnitude. */
+/* Reads a whole number. Beyond 10^12 in magnitude the value is not exact, but its magnitude is at
+ * least 10^12. */
 bool usd_integer(struct usd_text *text, const char *what, int64_t *number);
 
 /* n finite numbers in parentheses. */
