@@ -85,10 +85,10 @@ struct sheen_curves {
  * request, model, camera, lines, lights and deadline_ms count. `options` and `progress` may be
  * NULL. protocol/README.md, chapter 10, and server/curves/README.md say how curves are found.
  * SHEEN_BAD_ARGUMENT while requests are in flight, with a daemon that is too old, or if `at` is
- * given for silhouettes. SHEEN_BAD_REQUEST if the tolerance is too small for the model, or if the
- * lines of a pattern cannot be traced because of its rotation. If the request was not sent
- * (SHEEN_BAD_ARGUMENT, or a session that had failed before) *curves is unchanged; after another
- * failure it is empty. */
+ * given for silhouettes. SHEEN_BAD_REQUEST if the tolerance is too small for the model, if there
+ * are more than 1024 lines, or if the lines of a pattern cannot be traced because of its rotation.
+ * If the request was not sent (SHEEN_BAD_ARGUMENT, or a session that had failed before) *curves is
+ * unchanged; after another failure it is empty. */
 enum sheen_status sheen_trace_lines(struct sheen_session *session,
                                     const struct sheen_request *request,
                                     const struct sheen_curve_options *options,

@@ -10,8 +10,8 @@
 enum { LINE_SET_MOST_FIELDS = 33, LINE_SET_MOST_LINES = 1024 };
 enum { LINE_SET_WORDS = LINE_SET_MOST_LINES / 64 };
 
-/* Lines are numbered field by field: those of field f from first_line[f] to first_line[f + 1] -
- * 1. */
+/* Lines are numbered field by field: the first of field f is first_line[f], and the one after its
+ * last is first_line[f + 1]. */
 struct line_set {
     uint32_t n_fields, n_lines;
     struct line_field field[LINE_SET_MOST_FIELDS];
