@@ -44,8 +44,8 @@ static inline bool model_format_of_name(const char *name, enum model_format *for
 }
 
 /* The ending of the name decides if it is known; else the contents decide. glTF begins with "glTF",
- * or with '{' after white space; USD with "#usda" or "PXR-USDC"; .bpt with a digit and .patches with "patches", after white space;
- * the rest is OBJ. */
+ * or with '{' after white space; USD with "#usda" or "PXR-USDC"; .bpt with a digit and .patches
+ * with "patches", after white space; the rest is OBJ. */
 static inline enum model_format model_format(const char *name, const void *bytes, size_t size)
 {
     const char *text = bytes;

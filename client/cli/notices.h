@@ -18,8 +18,8 @@ void notices_ask(struct client *client, const struct options *options,
 void notices_print(struct client *client, const struct options *options,
                    const struct sheen_frame *frame, const struct sheen_model_info *info);
 
-/* The notices that are not about the picture: the model's warnings and the guessed up direction. For frames that show a part of the
- * picture alone. */
+/* The notices that are not about the picture: the model's warnings and the guessed up direction.
+ * For frames that show a part of the picture alone. */
 void notices_print_model(struct client *client, const struct options *options,
                          const struct sheen_frame *frame, const struct sheen_model_info *info);
 

@@ -8,8 +8,9 @@
 #define CAGE_MAX_VALENCES 64
 
 struct cage_statistics {
-    /* Of a model of patches only these are counted: its patches, the edges at which one ends without a neighbour, and those
-     * at which three or more patches meet, or two that are wound differently. */
+    /* Of a model of patches only these are counted: its patches, the edges at which one ends
+     * without a neighbour, and those at which three or more patches meet, or two that are wound
+     * differently. */
     uint32_t n_patches;
     uint32_t n_triangles, n_quads, n_ngons; /* faces of 3, 4, and 5 or more corners */
     uint32_t n_boundary_edges;              /* edges with one face */

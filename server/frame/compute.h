@@ -1,17 +1,18 @@
-/* Requests that compute numbers: how a struct computation (server/curves/computation.h) runs on the pool of threads.
- * Private to this folder.
+/* Requests that compute numbers: how a struct computation (server/curves/computation.h) runs on the
+ * pool of threads. Private to this folder.
  *
  * compute.c         the life of such a request: its turn, its memory, its slices, its answer
  * compute_breaks.c  the kind that finds breaks; every other kind is a file like it
  * compute_compare.c the kind that compares two surfaces
  * compute_lines.c   the kind that traces lines
  *
- * A computation waits in line until few enough others run and its memory is charged to its client. Then its slices
- * take turns with those of builds (server/assets/slices.h). While frames are drawn or encoded, one slice of it runs
- * at a time. The loop's thread starts and ends it; the pool runs begin(), slices and pack().
+ * A computation waits in line until few enough others run and its memory is charged to its client.
+ * Then its slices take turns with those of builds (server/assets/slices.h). While frames are drawn
+ * or encoded, one slice of it runs at a time. The loop's thread starts and ends it; the pool runs
+ * begin(), slices and pack().
  *
- * A new kind of request: a message (protocol/), a member of both unions (compute_asked.h and below), a struct compute_kind, and a row in
- * compute_kind_of() (compute.c). */
+ * A new kind of request: a message (protocol/), a member of both unions (compute_asked.h and
+ * below), a struct compute_kind, and a row in compute_kind_of() (compute.c). */
 #ifndef SHEEN_FRAME_COMPUTE_H
 #define SHEEN_FRAME_COMPUTE_H
 
@@ -20,7 +21,8 @@
 #include "server/frame/compute_asked.h"
 #include "server/frame/request_internal.h"
 
-/* The computations that run at the same time: of all clients, and of one party (a client's identity). */
+/* The computations that run at the same time: of all clients, and of one party (a client's
+ * identity). */
 enum { COMPUTE_MOST_RUNNING = 4, COMPUTE_MOST_OF_PARTY = 1 };
 
 struct compute;
@@ -34,10 +36,11 @@ struct compute_kind {
     const uint8_t *(*second)(const union compute_asked *asked);
     /* An upper bound of the bytes that the computation and the records of its answer take. */
     uint64_t (*bytes)(const struct compute *compute);
-    /* Makes the computation; it takes compute->bytes of memory at most. NULL with *error: it cannot begin. */
+    /* Makes the computation; it takes compute->bytes of memory at most. NULL with *error: it cannot
+     * begin. */
     struct computation *(*create)(const struct compute *compute, struct error *error);
-    /* After the last phase, on the pool: fills in compute->answer, and compute->records, if there are any. False
-     * with *error: there is no memory. */
+    /* After the last phase, on the pool: fills in compute->answer, and compute->records, if there
+     * are any. False with *error: there is no memory. */
     bool (*pack)(struct compute *compute, struct error *error);
 };
 

@@ -1,6 +1,6 @@
 /* Watches the daemon while it serves. The monitor feeds the service manager's watchdog as long as
- * the render thread, the compiler of shaders, the pool and the readers make progress, and it serves health and metrics over
- * HTTP.
+ * the render thread, the compiler of shaders, the pool and the readers make progress, and it serves
+ * health and metrics over HTTP.
  * Thread: the one that runs the loop (server/net/loop.h). */
 #ifndef SHEEN_OPS_MONITOR_H
 #define SHEEN_OPS_MONITOR_H

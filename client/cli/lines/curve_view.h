@@ -20,8 +20,8 @@ struct projection {
 
 void projection_init(struct projection *projection, const struct sheen_camera *camera,
                      uint32_t width_px, uint32_t height_px);
-/* The place of a point in the picture, px: 0,0 is its top left corner. Returns the depth along the line of sight,
- * which is above 0 in front of the camera. */
+/* The place of a point in the picture, px: 0,0 is its top left corner. Returns the depth along the
+ * line of sight, which is above 0 in front of the camera. */
 double projection_place(const struct projection *projection, const double point[3],
                         double place[2]);
 /* How a tangent at `point` runs in the picture, px for each unit; of any length. */
@@ -45,9 +45,9 @@ struct view_planes {
     const float (*normal)[3];
 };
 
-/* Cuts all curves into visible and hidden parts: a point is hidden if the surface at its pixel lies before it. The places of
- * cuts are found to 0.1 px along the curve. Returns the parts, malloc'd, in the order of curves; NULL when memory
- * is short. */
+/* Cuts all curves into visible and hidden parts: a point is hidden if the surface at its pixel lies
+ * before it. The places of cuts are found to 0.1 px along the curve. Returns the parts, malloc'd,
+ * in the order of curves; NULL when memory is short. */
 struct curve_part *curve_parts(const struct sheen_curves *curves,
                                const struct projection *projection,
                                const struct view_planes *planes, size_t *n);

@@ -6,8 +6,9 @@
 
 enum heat_kind { HEAT_NORMAL, HEAT_DISTANCE };
 
-/* Fills a canvas of the frames' size from their planes of positions and normals: the angle of the normals, or the distance
- * along the old normal. The scale ends at `most`; grey: no surface; magenta: on one side only. */
+/* Fills a canvas of the frames' size from their planes of positions and normals: the angle of the
+ * normals, or the distance along the old normal. The scale ends at `most`; grey: no surface;
+ * magenta: on one side only. */
 void heat_map_paint(struct canvas *canvas, enum heat_kind kind, const struct sheen_frame *old,
                     const struct sheen_frame *new, double most);
 /* Fills a canvas with the scale, from 0 on the left to `most` on the right. */

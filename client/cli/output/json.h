@@ -1,7 +1,8 @@
 /* Writes one JSON value: objects and arrays in order, indented by two blanks, strings escaped.
  *
  * `key` is NULL inside arrays and for the outermost value. NaN and infinity become null. The stream
- * belongs to the caller. No function has a name of jansson, which libsheen uses: the linker would take one for the other.
+ * belongs to the caller. No function has a name of jansson, which libsheen uses: the linker would
+ * take one for the other.
  * Thread: one at a time. */
 #ifndef SHEEN_CLIENT_JSON_H
 #define SHEEN_CLIENT_JSON_H
@@ -25,7 +26,8 @@ void json_text(struct json *json, const char *key, const char *value);
 void json_uint(struct json *json, const char *key, uint64_t value);
 /* In the fewest digits that give the same number back. */
 void json_double(struct json *json, const char *key, double value);
-/* Writes the number alone, finite, with the fewest digits that read back equal: for files of other formats. */
+/* Writes the number alone, finite, with the fewest digits that read back equal: for files of other
+ * formats. */
 void json_write_double(FILE *out, double value);
 void json_bool(struct json *json, const char *key, bool value);
 void json_vec3(struct json *json, const char *key, const double value[static 3]);

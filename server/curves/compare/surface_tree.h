@@ -1,10 +1,11 @@
-/* A tree of boxes over a surface, for closest.h. Its leaves are pieces: rectangles of patches that bend so little that
- * Newton's method finds the only solution from the middle.
+/* A tree of boxes over a surface, for closest.h. Its leaves are pieces: rectangles of patches that
+ * bend so little that Newton's method finds the only solution from the middle.
  *
- * Building it takes steps, so that it can be cut into slices: surface_tree_divide() for each leaf of the surface says
- * how many pieces there are; surface_tree_allocate(); surface_tree_fill() for each leaf; surface_tree_split();
- * surface_tree_sort() for each subtree; surface_tree_join(). Steps for leaves and subtrees may run at the same time;
- * the others are one thread's. A finished tree is read-only. */
+ * Building it takes steps, so that it can be cut into slices: surface_tree_divide() for each leaf
+ * of the surface says how many pieces there are; surface_tree_allocate(); surface_tree_fill() for
+ * each leaf; surface_tree_split(); surface_tree_sort() for each subtree; surface_tree_join(). Steps
+ * for leaves and subtrees may run at the same time; the others are one thread's. A finished tree is
+ * read-only. */
 #ifndef SHEEN_CURVES_COMPARE_SURFACE_TREE_H
 #define SHEEN_CURVES_COMPARE_SURFACE_TREE_H
 
@@ -28,7 +29,8 @@ struct tree_piece {
         height; /* its rectangle of the leaf; all of them are sums of powers of two */
 };
 
-/* A part of a leaf is cut into 1, 4, 16 or 64 pieces: at most 4^n of them for the index n of these. */
+/* A part of a leaf is cut into 1, 4, 16 or 64 pieces: at most 4^n of them for the index n of
+ * these. */
 enum { TREE_CUTS = 4 };
 
 struct surface_tree {
@@ -41,8 +43,8 @@ struct surface_tree {
     struct corner_sector *sectors; /* [surface->n_corners] */
     struct tree_piece *pieces;
     size_t n_pieces;
-    /* A complete binary tree: the children of node i are 2 i + 1 and 2 i + 2; the node j of depth d has the pieces from
-     * n_pieces j / 2^d on. */
+    /* A complete binary tree: the children of node i are 2 i + 1 and 2 i + 2; the node j of depth d
+     * has the pieces from n_pieces j / 2^d on. */
     struct tree_box *boxes;
     unsigned depth;     /* of the nodes that have no children */
     unsigned top_depth; /* of the roots of the subtrees that are sorted separately */
@@ -52,8 +54,9 @@ bool surface_tree_init(struct surface_tree *tree, const struct kept_surface *sur
                        struct error *error);
 void surface_tree_finish(struct surface_tree *tree);
 void surface_tree_divide(struct surface_tree *tree, size_t leaf);
-/* Where pieces and boxes would need more than `most_bytes`, parts are cut into fewer pieces, in which Newton's method may
- * miss a solution. False with ERROR_SERVER when even one piece of each part needs more. */
+/* Where pieces and boxes would need more than `most_bytes`, parts are cut into fewer pieces, in
+ * which Newton's method may miss a solution. False with ERROR_SERVER when even one piece of each
+ * part needs more. */
 bool surface_tree_allocate(struct surface_tree *tree, size_t most_bytes, struct error *error);
 void surface_tree_fill(struct surface_tree *tree, size_t leaf);
 /* Returns the number of subtrees. */

@@ -24,12 +24,13 @@ struct march_square {
     double at[2], size;
 };
 
-/* Adds the arc from `from` to `to`, where the line is a graph over parameter `axis` and F rises (slope 1) or falls (-1) along
- * the other. Parts that no ray meets are left out. */
+/* Adds the arc from `from` to `to`, where the line is a graph over parameter `axis` and F rises
+ * (slope 1) or falls (-1) along the other. Parts that no ray meets are left out. */
 void march_arc(const struct march *march, const struct march_square *square, int axis, int slope,
                const struct march_end *from, const struct march_end *to);
 
-/* Adds the arc as a straight piece between both ends: for pieces that are shorter than rounding or the tolerance. */
+/* Adds the arc as a straight piece between both ends: for pieces that are shorter than rounding or
+ * the tolerance. */
 void march_straight(const struct march *march, const struct march_end *from,
                     const struct march_end *to);
 

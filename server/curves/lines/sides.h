@@ -1,5 +1,5 @@
-/* Where lines cross a border: a side of a face, of a node, or between two parts of a node. Roots are found once on each
- * border, from the patches on one side of it, and used on both. */
+/* Where lines cross a border: a side of a face, of a node, or between two parts of a node. Roots
+ * are found once on each border, from the patches on one side of it, and used on both. */
 #ifndef SHEEN_LINES_SIDES_H
 #define SHEEN_LINES_SIDES_H
 
@@ -45,17 +45,19 @@ void root_list_cross(const struct root_list *list, struct line_signs *signs);
 void root_list_signs(const struct root_list *list, const struct line_signs *start, double t,
                      struct line_signs *signs);
 
-/* Sides are numbered counter-clockwise: side k runs from corner k to the next corner. Of a node: of its cell, whose corners
- * are at (0,0) (1,0) (1,1) (0,1) of the face's (u,v). */
+/* Sides are numbered counter-clockwise: side k runs from corner k to the next corner. Of a node: of
+ * its cell, whose corners are at (0,0) (1,0) (1,1) (0,1) of the face's (u,v). */
 
-/* Finds the roots on a side of a node, for all lines, from the node's own patches. The signs at its start are `signs`, and
- * at its end `end`: where the patches do not agree with them, which rounding can cause, a root is added. On return
- * `signs` are those at the end; with `end` NULL the patches decide. */
+/* Finds the roots on a side of a node, for all lines, from the node's own patches. The signs at its
+ * start are `signs`, and at its end `end`: where the patches do not agree with them, which rounding
+ * can cause, a root is added. On return `signs` are those at the end; with `end` NULL the patches
+ * decide. */
 void sides_find(struct sides_work *work, uint32_t node, unsigned side, struct line_signs *signs,
                 const struct line_signs *end, struct root_list *list);
 
-/* The same for a side of one patch, in the patch's own parameters; the border is run through from t = from to t = to, and
- * backwards if `from` is above `to`. The roots of several patches are put in order by sides_sort(). */
+/* The same for a side of one patch, in the patch's own parameters; the border is run through from t
+ * = from to t = to, and backwards if `from` is above `to`. The roots of several patches are put in
+ * order by sides_sort(). */
 void sides_find_patch(struct sides_work *work, const struct limit_patch *patch, unsigned side,
                       double from, double to, struct line_signs *signs, struct root_list *list);
 /* Adds roots at `t` for lines whose signs differ from `wanted`. */
@@ -63,8 +65,9 @@ void sides_agree(struct sides_work *work, double t, struct line_signs *signs,
                  const struct line_signs *wanted, struct root_list *list);
 void sides_sort(struct root_list *list);
 
-/* Finds the patch of a level of a CORNER (from 1) at the quarter `corner` (1 to 3, in local order) of the square of side
- * 2^(1 - level) at its vertex; of a STRIP, patch `level`, with corner 0; of a REGULAR node both 0. */
+/* Finds the patch of a level of a CORNER (from 1) at the quarter `corner` (1 to 3, in local order)
+ * of the square of side 2^(1 - level) at its vertex; of a STRIP, patch `level`, with corner 0; of a
+ * REGULAR node both 0. */
 void sides_patch(const struct sides_work *work, uint32_t node, int level, unsigned corner,
                  struct limit_patch *patch);
 

@@ -1,10 +1,11 @@
-/* Traces lines within patches: arcs from one crossing of a border to another, as points with exact normals. A line's zero
- * set in a square is known once its F is of one sign there, or rises or falls throughout along one parameter: then
- * the set is a graph over the other parameter, and the crossings on the square's border tell where it begins and ends.
- * All other squares are quartered. So no line is lost, neither a short nor a closed one (Snyder 1992).
+/* Traces lines within patches: arcs from one crossing of a border to another, as points with exact
+ * normals. A line's zero set in a square is known once its F is of one sign there, or rises or
+ * falls throughout along one parameter: then the set is a graph over the other parameter, and the
+ * crossings on the square's border tell where it begins and ends. All other squares are quartered.
+ * So no line is lost, neither a short nor a closed one (Snyder 1992).
  *
- * Where the surface is smooth and F has a saddle or an extremum of exactly 0, no square becomes a graph. There a mark is set,
- * at which arcs end. */
+ * Where the surface is smooth and F has a saddle or an extremum of exactly 0, no square becomes a
+ * graph. There a mark is set, at which arcs end. */
 #ifndef SHEEN_LINES_TRACE_H
 #define SHEEN_LINES_TRACE_H
 
@@ -24,7 +25,8 @@ void region_finish(struct region *region);
 void trace_patch(struct tracer *tracer, const struct limit_patch *patch,
                  const struct patch_place *place, const struct region *region);
 
-/* Joins the crossings on the sides of a region that is smaller than the tolerance, around an extraordinary vertex. */
+/* Joins the crossings on the sides of a region that is smaller than the tolerance, around an
+ * extraordinary vertex. */
 void trace_vertex(struct tracer *tracer, const struct patch_place *place,
                   const struct region *region);
 

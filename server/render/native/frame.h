@@ -1,9 +1,11 @@
-/* A frame of the native device while its threads draw it: the data that the threads share, and the data of each
- * thread. Internal to the folder; lanes/ is compiled once for each instruction set (sets.h).
+/* A frame of the native device while its threads draw it: the data that the threads share, and the
+ * data of each thread. Internal to the folder; lanes/ is compiled once for each instruction set
+ * (sets.h).
  *
- * Depths are compared by "nearness": far / z - 1 in perspective, else far - z, where z is along the axis and `far` is
- * behind the model. Nearness is linear in the picture, larger for what is nearer, and 0 for nothing. `before` is far
- * - z itself. Both are differences to a plane close to the model, so that a model far away keeps its digits. */
+ * Depths are compared by "nearness": far / z - 1 in perspective, else far - z, where z is along the
+ * axis and `far` is behind the model. Nearness is linear in the picture, larger for what is nearer,
+ * and 0 for nothing. `before` is the difference far - z itself. Both are differences to a plane
+ * close to the model, so that a model far away keeps its digits. */
 #ifndef SHEEN_RENDER_NATIVE_FRAME_H
 #define SHEEN_RENDER_NATIVE_FRAME_H
 
@@ -18,7 +20,8 @@
 #include "server/render/patch_grids.h"
 #include "server/render/view.h"
 
-/* The pixels that one thread draws at a time, without those around them (APRON) that it also looks at. */
+/* The pixels that one thread draws at a time, without those around them (APRON) that it also looks
+ * at. */
 enum { TILE_WIDTH = 128, TILE_HEIGHT = 128, TILE_PX = TILE_WIDTH * TILE_HEIGHT, APRON = 1 };
 /* A thread's array for a tile: with the apron, and room for a vector's end. */
 enum {
@@ -26,8 +29,8 @@ enum {
     SEEN_ROWS = TILE_HEIGHT + 2 * APRON,
     SEEN_PX = SEEN_PITCH * (SEEN_ROWS + 2)
 };
-/* The clusters of a model are divided into at most this many parts, whatever the number of threads, so that the order
- * of drawing does not depend on it. */
+/* The clusters of a model are divided into at most this many parts, whatever the number of threads,
+ * so that the order of drawing does not depend on it. */
 enum { MAX_PARTS = 64 };
 
 /* The camera as lanes read it (shaders/view.glsl). */
@@ -75,7 +78,8 @@ struct native_quad {
 };
 enum { QUAD_CELL = UINT16_MAX, QUAD_TRIANGLES = UINT16_MAX - 1 };
 
-/* A triangle of a piece that the near plane or the picture's border cuts, or that extends far beyond. */
+/* A triangle of a piece that the near plane or the picture's border cuts, or that extends far
+ * beyond. */
 struct native_triangle {
     float x[3], y[3], nearness[3];
     float s[3], t[3], inverse_z[3]; /* s and t in the piece, in [0,1] */
@@ -156,9 +160,11 @@ static inline float native_pixel_units(const struct native_rays *rays, float z)
     return z * rays->slope_px + rays->start_px;
 }
 
-/* Allocates memory aligned to cache lines, in huge pages if it is large. NULL when memory is short. */
+/* Allocates memory aligned to cache lines, in huge pages if it is large. NULL when memory is
+ * short. */
 void *native_allocate(size_t bytes);
-/* Makes room for n elements of `size` bytes and keeps the present ones. False when memory is short. */
+/* Makes room for n elements of `size` bytes and keeps the present ones. False when memory is
+ * short. */
 bool native_grow(void *pointer, size_t *capacity, size_t n, size_t size);
 
 /* A node in camera space. */
@@ -172,15 +178,17 @@ struct native_seen_node {
 void native_see_node(const struct native_frame *frame, const struct limit_node *node,
                      struct native_seen_node *seen);
 
-/* The four edges of a node, in its local coordinates: whether its Ptex face has a border there, how many of the
- * node's cells lie in between, and the width of the rounding, in the node's size. */
+/* The four edges of a node, in its local coordinates: whether its Ptex face has a border there, how
+ * many of the node's cells lie in between, and the width of the rounding, in the node's size. */
 struct native_borders {
     float is[4], beyond[4], rounding[4];
 };
 void native_borders_of(const struct limit_node *node, struct native_borders *borders);
 
-/* Adds the triangles of a piece's cells, clipped to what can be drawn, to those of the thread. Returns their number,
- * or -1 when memory is short; adds the vertices to frame->n_vertices, and nothing else if that is too many. Sets `box`, the pixels whose centres they may cover, and the largest nearness. */
+/* Adds the triangles of a piece's cells, clipped to what can be drawn, to those of the thread.
+ * Returns their number, or -1 when memory is short; adds the vertices to frame->n_vertices, and
+ * nothing else if that is too many. Sets `box`, the pixels whose centres they may cover, and the
+ * largest nearness. */
 int native_cut_piece(struct native_frame *frame, struct native_thread *thread,
                      const struct native_piece *piece, uint32_t grid, int box[4], float *nearest);
 

@@ -1,12 +1,13 @@
-/* Rays spread over pixels that one sample cannot show (shaders/rounded.glsl), and the places where they meet the
- * surface. Internal to the folder.
+/* Rays spread over pixels that one sample cannot show (shaders/rounded.glsl), and the places where
+ * they meet the surface. Internal to the folder.
  *
- * A thread takes at most RAYS_PX pixels of one tile at a time. It draws the tile's pieces, cut finely, at the points of
- * the picture through which these pixels' rays run. The piece at a ray's point gives the place where the ray starts:
- * a task. A drawn piece is not exactly the surface, so a piece beside the point is tried as well where it lies in
- * front, and a ray that misses its piece starts again from the rays beside it. All tasks that start on the same
- * sub-patch form a group, which lanes solve together, because they read the same coefficients. The hit of a ray depends on the
- * other rays only where it misses the piece at its point. */
+ * A thread takes at most RAYS_PX pixels of one tile at a time. It draws the tile's pieces, cut
+ * finely, at the points of the picture through which these pixels' rays run. The piece at a ray's
+ * point gives the place where the ray starts: a task. A drawn piece is not exactly the surface, so
+ * a piece beside the point is tried as well where it lies in front, and a ray that misses its piece
+ * starts again from the rays beside it. All tasks that start on the same sub-patch form a group,
+ * which lanes solve together, because they read the same coefficients. The hit of a ray depends on
+ * the other rays only where it misses the piece at its point. */
 #ifndef SHEEN_RENDER_NATIVE_RAYS_RAYS_H
 #define SHEEN_RENDER_NATIVE_RAYS_RAYS_H
 
@@ -45,18 +46,19 @@ struct native_ray_group {
     const struct native_patch *patch; /* NULL: the model does not keep it yet, or at a vertex */
 };
 
-/* A piece that rays may meet: nearness (0: none), an index of native_tile_room.local, and the place on that piece
- * (native_tile_room.place). One for each ray. */
+/* A piece that rays may meet: nearness (0: none), an index of native_tile_room.local, and the place
+ * on that piece (native_tile_room.place). One for each ray. */
 struct native_ray_pieces {
     float nearness[RAYS_AT_ONCE + RAYS_END];
     int32_t piece[RAYS_AT_ONCE + RAYS_END], place[RAYS_AT_ONCE + RAYS_END];
 };
 
-/* Columns of a tile that are listed, 64 in a word; and squares of the tile in which any pixel is listed. */
+/* Columns of a tile that are listed, 64 in a word; and squares of the tile in which any pixel is
+ * listed. */
 enum { RAY_ROW_WORDS = TILE_WIDTH / 64, RAY_SQUARE = 8, RAY_SQUARES = TILE_HEIGHT / RAY_SQUARE };
 
-/* An entry of the hash table of sub-patches that rays have reached: the group of its tasks in sorting number
- * `sorting`. */
+/* An entry of the hash table of sub-patches that rays have reached: the group of its tasks in
+ * sorting number `sorting`. */
 struct native_ray_patch {
     uint32_t node, sorting; /* sorting 0: unused */
     uint16_t index, group;
@@ -103,8 +105,8 @@ struct native_part_of_node native_part_of_index(const struct limit_node *node, u
 void native_forget_ray_patches(struct native_ray_room *room);
 /* Sorts room->task by sub-patch into room->group. */
 void native_group_rays(const struct native_model *model, struct native_ray_room *room);
-/* Sorts the rays of room->on by their pieces into room->group. Those on pieces that are not of one sub-patch become
- * tasks. */
+/* Sorts the rays of room->on by their pieces into room->group. Those on pieces that are not of one
+ * sub-patch become tasks. */
 void native_group_pieces(const struct native_frame *frame, struct native_tile_room *tile,
                          struct native_ray_room *room);
 /* Adds a task for a ray at the place of one of `pieces`. */
@@ -136,17 +138,18 @@ static inline bool native_listed_at_edge(uint32_t listed)
 /* The frame's tile in which a listed pixel lies; *pixel: its place there, x + TILE_WIDTH y. */
 uint32_t native_listed_tile(const struct native_frame *frame, uint32_t listed, uint32_t *pixel);
 
-/* Sorts listed pixels by the picture's tiles, and within these by smaller squares; `tile` is what is drawn. `room` is
- * memory for n pixels. */
+/* Sorts listed pixels by the picture's tiles, and within these by smaller squares; `tile` is what
+ * is drawn. `room` is memory for n pixels. */
 void native_sort_pixels(uint32_t *pixel, uint32_t n, const struct tile *tile, uint32_t *room);
 
-/* Meets the rays of n pixels of one tile, at most RAYS_PX, from `first` on; thread->rays must exist. False when memory
- * is short. */
+/* Meets the rays of n pixels of one tile, at most RAYS_PX, from `first` on; thread->rays must
+ * exist. False when memory is short. */
 bool native_meet_pixels(const struct native_frame *frame, struct native_thread *thread,
                         const struct native_rounded *rounded, uint32_t first, uint32_t n);
 
-/* Meets the rays of pixels with the surface, by all threads. The device's last frame (native_device_drawn) must be of
- * what is drawn. Writes every hit. False with ERROR_SERVER when memory is short. */
+/* Meets the rays of pixels with the surface, by all threads. The device's last frame
+ * (native_device_drawn) must be of what is drawn. Writes every hit. False with ERROR_SERVER when
+ * memory is short. */
 bool native_meet_rounded(struct native_device *device, const struct native_rounded *rounded,
                          struct error *error);
 
