@@ -1,6 +1,7 @@
 """Models of patches through the programs: what info counts, what breaks, comparison and lines say of them, and how damaged
 files end."""
 import json
+import math
 import os
 import random
 import subprocess
@@ -19,6 +20,20 @@ def strip(bend):
     for patch in range(2):
         lines.append("2 1")
         lines += [f"{patch + i / 2} {y} {bend * (patch == 1 and i == 2)}" for y in range(2) for i in range(3)]
+    return "\n".join(lines) + "\n"
+
+
+def spindle(height):
+    """A closed surface of eight patches around z, with a pole at each end."""
+    rows = ((1, 0), (1, height / 3), (0.5, 0.6 * height), (0, height))
+    bend = 4 / 3 * math.tan(math.pi / 8)
+    lines = ["8"]
+    for k in range(8):
+        sine, cosine = round(math.sin(k * math.pi / 2)), round(math.cos(k * math.pi / 2))
+        arc = [(cosine * x - sine * y, sine * x + cosine * y) for x, y in ((1, 0), (1, bend), (bend, 1), (0, 1))]
+        lines.append("3 3")
+        for x, y, radius, z in ((x, y, radius, z) for radius, z in rows for x, y in (arc if k < 4 else arc[::-1])):
+            lines.append(f"{radius * x} {radius * y} {z if k < 4 else -z}")
     return "\n".join(lines) + "\n"
 
 
@@ -70,6 +85,18 @@ class Patches(DaemonCase):
             line if line.count(" ") != 2 or line[0] == "#" else line.split(" ", 1)[0] + " " +
             str(float(line.split()[1]) + 0.5) + " " + line.split()[2] for line in lines))
         self.sheen("compare", BOTTLE, moved, code=1)
+
+    def test_a_pole_is_no_border(self):
+        """The tip of the longer spindle lies beyond that of the shorter one, where no line along its normals leads to:
+        its counterpart is the tip, because the surface does not end there."""
+        longer, shorter = self.write("longer.bpt", spindle(1)), self.write("shorter.bpt", spindle(0.95))
+        info = json.loads(self.sheen("info", longer, "--json").stdout)
+        self.assertEqual((info["patches"], info["boundary_edges"], info["nonmanifold_edges"]), (8, 0, 0))
+        for old, new in ((longer, shorter), (shorter, longer)):
+            pair, = json.loads(self.sheen("compare", old, new, "--samples", "20000", "--json", code=1).stdout)["pairs"]
+            for side in ("old", "new"):
+                self.assertEqual(pair[side + "_samples"]["uncovered_area"], 0)
+            self.assertAlmostEqual(abs(pair["measures"]["distance"]["worst"]), 0.05, delta=1e-3)
 
     def test_lines(self):
         """Of the bottle without its bottom: lines go on across smooth joints, so that they end at open borders, or

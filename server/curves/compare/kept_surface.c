@@ -293,19 +293,24 @@ void kept_surface_place(const struct kept_surface *surface, size_t leaf, double 
     uv[1] = (cy + vs[node->rotation & 3]) * side;
 }
 
+/* True if the surface ends at an edge of a face. An edge without a neighbour that has no border is one point, such as a
+ * pole: the surface goes on around it. */
+static bool ends_at(const struct limit_tables *tables, uint32_t face, unsigned edge)
+{
+    const uint32_t across = tables->adjacency[face].across[edge];
+    if (across == LIMIT_NO_FACE)
+        return (tables->nodes[face].borders >> 4 * edge & 15) != 0;
+    return tables->nodes[across >> 2].kind == LIMIT_HOLE;
+}
+
 bool kept_surface_at_border(const struct kept_surface *surface, size_t leaf, double x, double y)
 {
     uint32_t face;
     double uv[2];
     kept_surface_place(surface, leaf, x, y, &face, uv);
     const double beyond[4] = {uv[1], 1 - uv[0], 1 - uv[1], uv[0]};
-    const struct limit_adjacency *beside = &surface->tables->adjacency[face];
-    for (int edge = 0; edge < 4; edge++) {
-        if (beyond[edge] > 1e-6)
-            continue;
-        uint32_t across = beside->across[edge];
-        if (across == LIMIT_NO_FACE || surface->tables->nodes[across >> 2].kind == LIMIT_HOLE)
+    for (unsigned edge = 0; edge < 4; edge++)
+        if (beyond[edge] <= 1e-6 && ends_at(surface->tables, face, edge))
             return true;
-    }
     return false;
 }

@@ -113,7 +113,8 @@ void kept_surface_place(const struct kept_surface *surface, size_t leaf, double 
                         uint32_t *face, double uv[2]);
 
 /* True if local (x,y) of a leaf, within 1e-6 of a face, lies where the surface ends: at an edge of
- * its face across which there is no face, or a hole. */
+ * its face across which there is no face, or a hole. An edge that is one point, such as a pole, is
+ * no end. */
 bool kept_surface_at_border(const struct kept_surface *surface, size_t leaf, double x, double y);
 
 #endif
