@@ -4,7 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_COMPARISONS = 256 }; /* for each edge in the mean */
+enum {
+    MOST_COMPARISONS = 256, /* for each edge in the mean */
+    MOST_MATES = 8          /* that an edge looks for among those after it */
+};
 
 /* A direction along which the middles of edges are sorted; few models have many edges across it. */
 static const double DIRECTION[3] = {0.5773, 0.6137, 0.5386};
@@ -17,7 +20,7 @@ struct edge {
 
 struct found {
     const struct edge *mate;
-    uint32_t n;    /* edges that lie together with it */
+    uint32_t n;    /* edges that lie together with it, as far as they are counted */
     bool is_along; /* the mate runs the same way */
 };
 
@@ -110,11 +113,14 @@ static void meet(struct found *found, const struct edge *mate, bool along)
     found->is_along = along;
 }
 
+/* Counts the edges that lie together with each edge. An edge stops after MOST_MATES: its place is tangled then, and
+ * those that it leaves out meet its mates, so that a place with very many edges takes a time that is linear in them. */
 static void match(const struct edge *edges, struct found *found, size_t n, double distance)
 {
     size_t left = n * MOST_COMPARISONS;
-    for (size_t a = 0; a < n; a++)
-        for (size_t b = a + 1; b < n && left > 0; b++, left--) {
+    for (size_t a = 0; a < n; a++) {
+        unsigned n_mates = 0;
+        for (size_t b = a + 1; b < n && n_mates < MOST_MATES && left > 0; b++, left--) {
             if (edges[b].key - edges[a].key > 2 * distance)
                 break;
             bool along = lie_together(&edges[a], &edges[b], true, distance);
@@ -122,7 +128,9 @@ static void match(const struct edge *edges, struct found *found, size_t n, doubl
                 continue;
             meet(&found[a], &edges[b], along);
             meet(&found[b], &edges[a], along);
+            n_mates++;
         }
+    }
 }
 
 /* Joins an edge with its only mate, or counts why there is none. */

@@ -224,6 +224,128 @@ static void test_poles_and_tangles(void **unused)
     limit_tables_finish(&tables);
 }
 
+/* --- joints against a comparison of every edge with every other one */
+
+enum { MOST_PATCHES = 40, MOST_EDGES = 4 * MOST_PATCHES };
+
+static bool are_near(const double a[3], const double b[3], double distance)
+{
+    return fabs(a[0] - b[0]) <= distance && fabs(a[1] - b[1]) <= distance &&
+           fabs(a[2] - b[2]) <= distance;
+}
+
+/* As the header says: 1e-9 of the diagonal, and 4e-15 of the largest coordinate. */
+static double joint_distance(const struct cage_patch *patch, int n)
+{
+    double diagonal = 0, largest = 0;
+    for (int i = 0; i < 3; i++) {
+        double low = INFINITY, high = -INFINITY;
+        for (int k = 0; k < 16 * n; k++) {
+            low = fmin(low, patch[k / 16].point[k % 16][i]);
+            high = fmax(high, patch[k / 16].point[k % 16][i]);
+        }
+        diagonal = hypot(diagonal, high - low);
+        largest = fmax(largest, fmax(fabs(low), fabs(high)));
+    }
+    return 1e-9 * diagonal + 4e-15 * largest;
+}
+
+/* Compares every edge with all others. Returns the number of edges that lie together with the one that most others do. */
+static int expect_joints(struct cage_patch *patch, int n)
+{
+    static double edge[MOST_EDGES][4][3];
+    int n_mates[MOST_EDGES] = {0}, mate[MOST_EDGES] = {0}, most = 0;
+    bool along[MOST_EDGES] = {false};
+    uint32_t boundary = 0, tangled = 0, against = 0, first = UINT32_MAX;
+    const double distance = joint_distance(patch, n);
+    struct cage cage = cage_of(patch, (size_t)n);
+    struct cage_joints joints;
+    for (int e = 0; e < 4 * n; e++)
+        cage_patch_edge(patch[e / 4].point, (unsigned)e % 4, edge[e]);
+    for (int a = 0; a < 4 * n; a++)
+        for (int b = 0; b < 4 * n; b++) {
+            bool same = a != b, opposite = a != b;
+            for (int k = 0; k < 4; k++) {
+                same = same && are_near(edge[a][k], edge[b][k], distance);
+                opposite = opposite && are_near(edge[a][k], edge[b][3 - k], distance);
+            }
+            if (!same && !opposite)
+                continue;
+            n_mates[a]++;
+            mate[a] = b;
+            along[a] = same;
+        }
+    assert_true(cage_joints_find(&joints, &cage));
+    for (int a = 0; a < 4 * n; a++) {
+        bool is_pair = n_mates[a] == 1 && n_mates[mate[a]] == 1;
+        boundary += n_mates[a] == 0;
+        tangled += n_mates[a] > 0 && !is_pair;
+        against += is_pair && along[a] && a < mate[a];
+        if (is_pair && along[a] && (uint32_t)a / 4 < first)
+            first = (uint32_t)a / 4;
+        assert_int_equal(joints.across[a / 4][a % 4],
+                         is_pair && !along[a] ? (uint32_t)mate[a] : CAGE_NO_PATCH);
+        most = n_mates[a] > most ? n_mates[a] : most;
+    }
+    assert_int_equal(joints.n_boundary, boundary);
+    assert_int_equal(joints.n_tangled, tangled);
+    assert_int_equal(joints.n_against, against);
+    assert_int_equal(joints.first_against, first);
+    cage_joints_finish(&joints);
+    return most;
+}
+
+/* A flat patch between four of the points, each moved in z by steps of `step`, 0 to `steps`. */
+static struct cage_patch random_quad(double points[][3], int n_points, double step, int steps)
+{
+    struct cage_patch patch = {.basis = CAGE_BEZIER};
+    double corner[4][3];
+    int at[4];
+    for (int c = 0; c < 4; c++) {
+        bool is_new = false;
+        while (!is_new) {
+            at[c] = (int)(uniform() * n_points);
+            is_new = true;
+            for (int d = 0; d < c; d++)
+                is_new = is_new && at[d] != at[c];
+        }
+        memcpy(corner[c], points[at[c]], sizeof corner[c]);
+        corner[c][2] += step * floor(uniform() * (steps + 1));
+    }
+    for (int k = 0; k < 16; k++)
+        for (int i = 0; i < 3; i++) {
+            const double u = k % 4 / 3.0, v = k / 4 / 3.0;
+            patch.point[k][i] = (1 - v) * ((1 - u) * corner[0][i] + u * corner[1][i]) +
+                                v * ((1 - u) * corner[3][i] + u * corner[2][i]);
+        }
+    return patch;
+}
+
+/* Few points, so that many edges lie together. Up to nine patches have points in rows of steps that are a little more than
+ * half the distance at which points are equal: two that both equal a third one may differ. Where more edges may lie
+ * together than an edge looks for, all points of a group are equal. */
+static void test_joints_against_all_pairs(void **unused)
+{
+    int most = 0;
+    (void)unused;
+    state = 11;
+    for (int round = 0; round < 600; round++) {
+        const bool is_row = round % 2;
+        const int n = 1 + (int)(uniform() * (is_row ? 9 : MOST_PATCHES));
+        const int n_points = 4 + (int)(uniform() * (round % 3 ? 6 : 60));
+        struct cage_patch patch[MOST_PATCHES];
+        double points[64][3];
+        for (int k = 0; k < n_points; k++)
+            for (int i = 0; i < 3; i++)
+                points[k][i] = uniform();
+        for (int p = 0; p < n; p++)
+            patch[p] = random_quad(points, n_points, is_row ? 0.6e-9 : 1e-10, is_row ? 3 : 2);
+        int n_mates = expect_joints(patch, n);
+        most = n_mates > most ? n_mates : most;
+    }
+    assert_true(most > 25);
+}
+
 /* The faces of a regular cage, given as B-spline patches, have the same points bit for bit, and the same neighbours. */
 static void test_faces_of_a_cage(void **unused)
 {
@@ -369,6 +491,7 @@ int main(void)
         cmocka_unit_test(test_smoothness),
         cmocka_unit_test(test_smoothness_of_sheared_patches),
         cmocka_unit_test(test_poles_and_tangles),
+        cmocka_unit_test(test_joints_against_all_pairs),
         cmocka_unit_test(test_faces_of_a_cage),
         cmocka_unit_test(test_bottle_against_long_double),
     };
