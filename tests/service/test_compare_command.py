@@ -190,7 +190,8 @@ class CompareCommand(Comparing):
         rows = [line for line in text.splitlines() if line.startswith("| ")]
         self.assertEqual(len({row.count("|") for row in rows}), 1)
         self.assertTrue(rows[-1].startswith("| same.obj"), "the worst come first")
-        self.compare(os.path.join(self.folder, "pairs"), os.path.join(self.folder, "pairs"), code=3)
+        done = self.compare(os.path.join(self.folder, "pairs"), os.path.join(self.folder, "pairs"), code=3)
+        self.assertIn("neither folder has a model (.obj, .gltf, .glb, .usda, .bpt, .patches)", done.stderr)
 
     def test_a_bad_file_in_a_folder(self):
         """The first, the second and the last pair are bad; the others are compared nevertheless."""
@@ -358,6 +359,12 @@ class Report(Comparing):
         self.assertIn("--eye 3,3,9 --target 3,3,0 --fov 40", page.text)
         self.assertGreater(len(colours("p0-v1-distance.png")), 10)
         report = ("--report", os.path.join(self.folder, "report"))
+        longest = "--view front".ljust(499)  # views.h
+        views = self.write("long.txt", longest + "\n" + longest + "\r\n" + longest)
+        self.compare(self.flat, self.flat, *report, "--views", views, code=0)
+        for text in (longest + " ", longest + " \n", longest + "\n" + longest + " \r\n"):
+            done = self.compare(self.flat, self.flat, *report, "--views", self.write("long.txt", text), code=2)
+            self.assertIn(f"line {text.strip().count(chr(10)) + 1}: is too long", done.stderr)
         for text, words in (("--view front\n--light tunnel\n", "line 2: "), ("--view nowhere", "line 1: --view 'nowhere'"),
                             ("--eye 1,2,3", "needs a --target"), ("front", "argument too many"), ("# nothing\n", "no view"),
                             ("--view front\n" * 65, "more than 64 views"), ("#" * 1000, "line 1: is too long")):

@@ -144,7 +144,8 @@ static enum sheen_status find_pairs(struct pairs *pairs, const struct options *o
         status = add_folder(pairs, paths[side], side, error);
     if (!status && pairs->n == 0)
         status = failure_set(error, SHEEN_BAD_MODEL,
-                             "neither folder has a model (.obj, .gltf, .glb, .usda)");
+                             "neither folder has a model (.obj, .gltf, .glb, .usda, .bpt, "
+                             ".patches)");
     if (!status)
         qsort(pairs->list, pairs->n, sizeof(*pairs->list), by_name);
     return status;

@@ -66,7 +66,7 @@ static enum sheen_status add_line(struct views *views, const char *path, size_t 
 
 enum sheen_status views_read(const char *path, struct views *views, struct sheen_error *error)
 {
-    char line[VIEW_BYTES];
+    char line[VIEW_BYTES + 2]; /* with the end of the line, \r\n */
     enum sheen_status status = SHEEN_OK;
     views->n = 0;
     if (!path)
@@ -75,7 +75,7 @@ enum sheen_status views_read(const char *path, struct views *views, struct sheen
     if (!file)
         return failure_set(error, SHEEN_BAD_ARGUMENT, "--views %.200s: %s", path, strerror(errno));
     for (size_t number = 1; !status && fgets(line, sizeof(line), file); number++) {
-        if (strlen(line) == sizeof(line) - 1)
+        if (strcspn(line, "\r\n") >= VIEW_BYTES)
             status = failure_set(error, SHEEN_BAD_ARGUMENT, "%.200s, line %zu: is too long", path,
                                  number);
         else
