@@ -118,6 +118,24 @@ class Patches(DaemonCase):
                 self.assertTrue(abs(point["position"][1] - 184) < 1e-3 or abs(point["position"][1] - 2) < 1e-3, point)
         self.assertGreater(len(faces), 8)
 
+    def test_lines_without_a_normal(self):
+        """The normal of a patch whose points lie on one line is little more than rounding, so that its lines wind without
+        end. What is undecided is marked, and the work has a limit. A request that is late keeps nobody waiting."""
+        points = []
+        for row in range(4):
+            for column in range(4):
+                t = 0.037 * column + 0.091 * row
+                points.append(f"{0.3 + t} {-0.2 + 7 * t} {0.17 + 3 * t}")
+        model = self.write("line.patches", "\n".join(["patches 1", "bezier 3 3"] + points) + "\n")
+        path = os.path.join(self.folder, "line.json")
+        done = self.sheen("lines", model, "-o", path, "--deadline", "1", code=4)
+        self.assertIn("within --deadline 1 ", done.stderr)
+        self.sheen("lines", model, "-o", path)
+        with open(path, encoding="utf-8") as file:
+            counts = json.load(file)["counts"]
+        self.assertGreater(counts["marks"], 0)
+        self.assertLess(counts["points"], 1 << 18)
+
     def test_each_form_draws_the_same(self):
         """One bicubic patch as Bezier patch in three files, as B-spline, Hermite and bicubically blended Coons patch."""
         noise = random.Random(5)

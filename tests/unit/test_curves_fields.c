@@ -211,7 +211,8 @@ static void all_crossings_are_found_and_no_others(void **state)
             crossings_init(&crossings, &on, &segment);
             bool negative[2] = {patch_field_is_negative(&on, &line, segment.from),
                                 patch_field_is_negative(&on, &line, segment.to)};
-            unsigned is = (unsigned)crossings_find(&crossings, &on, &line, negative, at);
+            size_t n_parts = 0;
+            unsigned is = (unsigned)crossings_find(&crossings, &on, &line, negative, at, &n_parts);
             for (unsigned k = 1; k < is; k++)
                 least = fmin(least, at[k] - at[k - 1]);
             assert_true(least > 0);
@@ -272,7 +273,8 @@ static void more_crossings_than_fit_keep_the_parity(void **state)
             at[k] = -1;
         bool negative[2] = {patch_field_is_negative(&on, &line, segment.from),
                             patch_field_is_negative(&on, &line, segment.to)};
-        unsigned n = (unsigned)crossings_find(&crossings, &on, &line, negative, at);
+        size_t n_parts = 0;
+        unsigned n = (unsigned)crossings_find(&crossings, &on, &line, negative, at, &n_parts);
         assert_true(n <= MOST_CROSSINGS && n % 2 == (negative[0] != negative[1]));
         for (unsigned k = 1; k < n; k++)
             assert_true(at[k] > at[k - 1]);

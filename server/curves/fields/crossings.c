@@ -141,10 +141,12 @@ static void find_between(struct finding *finding, const struct segment *segment,
 }
 
 int crossings_find(const struct crossings *crossings, const struct patch_field *on,
-                   const struct field_line *line, const bool negative[2], double at[MOST_CROSSINGS])
+                   const struct field_line *line, const bool negative[2], double at[MOST_CROSSINGS],
+                   size_t *n_parts)
 {
     struct finding finding = {on, line, &crossings->segment, patch_field_noise(on, line), at, 0, 0};
     find_between(&finding, &crossings->segment, &crossings->terms, 0, 1, negative);
+    *n_parts += (size_t)finding.n_parts;
     return finding.n;
 }
 

@@ -51,10 +51,11 @@ enum { MOST_CROSSINGS = 64 };
 /* Finds the places, from 0 to 1 along the segment and ascending, where F changes its sign.
  * `negative` says whether F counts as negative at the two ends. Returns the number of crossings,
  * which is odd exactly if the two ends differ. Two crossings that are nearer than 2^-40 to each
- * other are not reported. Three are reported as one. */
+ * other are not reported. Three are reported as one. Adds to *n_parts the number of parts of the
+ * segment on which ranges could not tell the sign, by which the caller can bound its work. */
 int crossings_find(const struct crossings *crossings, const struct patch_field *on,
-                   const struct field_line *line, const bool negative[2],
-                   double at[MOST_CROSSINGS]);
+                   const struct field_line *line, const bool negative[2], double at[MOST_CROSSINGS],
+                   size_t *n_parts);
 
 /* The only crossing along the segment. The signs of F at its two ends must differ. */
 double crossings_only(const struct segment *segment, const struct patch_field *on,

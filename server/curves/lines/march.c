@@ -119,6 +119,9 @@ struct traced_point march_point(const struct march *march, const double at[2])
     return point_of(march, at, &surface, jet);
 }
 
+/* Steps of Newton's method that a point of a smooth line takes. More of them count as work. */
+enum { USUAL_STEPS = 12 };
+
 /* A march over one parameter. */
 struct over {
     const struct march *march;
@@ -126,6 +129,7 @@ struct over {
     int axis, slope;
     double way;  /* 1 or -1: the sign of the steps along the axis */
     bool failed; /* memory was short */
+    bool is_cut; /* the patch's limit of work was reached, so points are missing */
     struct traced_point *point;
     double (*at)[2]; /* the patch's parameters of each point */
     size_t n, room;
@@ -141,6 +145,7 @@ static struct traced_point solve(const struct over *over, double x, double guess
     double jet[3];
     at[over->axis] = x;
     for (int i = 0;; i++) {
+        over->march->tracer->n_work += i > USUAL_STEPS;
         at[other] = y;
         jet_at(over->march, at, &surface, jet);
         double step = -jet[0] / jet[1 + other], to = y + step;
@@ -221,7 +226,9 @@ static void refine(struct over *over, struct traced_point a, const double from[2
 {
     double tolerance = over->march->tracer->tolerance;
     bool is_straight = sagitta(&a, &b) <= tolerance;
-    if (over->failed || *over->march->tracer->cancelled || depth == MOST_HALVINGS ||
+    struct tracer *tracer = over->march->tracer;
+    over->is_cut |= tracer->n_work > TRACE_MOST_WORK;
+    if (over->failed || over->is_cut || *tracer->work.cancelled || depth == MOST_HALVINGS ||
         (depth > 0 && is_straight)) {
         put(over, &b, to);
         return;
@@ -312,6 +319,8 @@ void march_arc(const struct march *march, const struct march_square *square, int
         march->tracer->work.failed = true;
     else
         add_met(&over, from->node, to->node);
+    if (over.is_cut)
+        march_mark(march->tracer, MARK_SINGULAR, march->line, to->node, &last);
     free(over.point);
     free(over.at);
 }

@@ -119,12 +119,13 @@ static void find_line(struct sides_work *work, uint32_t line, const struct cross
 {
     double at[MOST_CROSSINGS];
     const struct field_line *wanted = &work->set->line[line];
+    size_t n_parts = 0;
     int sign = field_quick_sign(&side->terms, wanted), n;
     bool negative[2] = {line_sign(signs, line)};
     if (sign && (sign < 0) == negative[0])
         return;
     negative[1] = patch_field_is_negative(on, wanted, side->segment.to);
-    n = crossings_find(side, on, wanted, negative, at);
+    n = crossings_find(side, on, wanted, negative, at, &n_parts);
     for (int k = 0; k < n; k++) {
         add(work, list, line, from + at[k] * (to - from));
         line_sign_flip(signs, line);
@@ -146,7 +147,7 @@ void sides_find_patch(struct sides_work *work, const struct limit_patch *patch, 
         struct crossings along;
         patch_field_init(&on, &set->field[f], &bezier);
         crossings_init(&along, &on, &segment);
-        for (uint32_t i = set->first_line[f]; i < set->first_line[f + 1]; i++)
+        for (uint32_t i = set->first_line[f]; i < set->first_line[f + 1] && !*work->cancelled; i++)
             find_line(work, i, &along, &on, fmin(from, to), fmax(from, to), signs, list);
     }
 }

@@ -3,6 +3,8 @@
 #ifndef SHEEN_LINES_SIDES_H
 #define SHEEN_LINES_SIDES_H
 
+#include <stdatomic.h>
+
 #include "server/curves/fields/line_set.h"
 #include "server/surface/tables.h"
 
@@ -23,9 +25,10 @@ struct root_list {
 struct sides_work {
     const struct limit_tables *tables;
     const struct line_set *set;
-    const uint8_t *levels; /* of each node: how many levels of a CORNER are traced */
-    uint64_t next_node;    /* the number of the next crossing */
-    bool failed;           /* memory was short */
+    const uint8_t *levels;        /* of each node: how many levels of a CORNER are traced */
+    uint64_t next_node;           /* the number of the next crossing */
+    bool failed;                  /* memory was short */
+    const atomic_bool *cancelled; /* once it is true, roots may be missing: nobody wants them */
 };
 
 /* Appends a root; sets work->failed when memory is short. */

@@ -114,7 +114,10 @@ static bool begin_borders(struct surface_lines *lines, size_t *n_slices, struct 
 
 static struct sides_work work_of(const struct surface_lines *lines)
 {
-    return (struct sides_work){.tables = lines->tables, .set = lines->set, .levels = lines->levels};
+    return (struct sides_work){.tables = lines->tables,
+                               .set = lines->set,
+                               .levels = lines->levels,
+                               .cancelled = &lines->base.cancelled};
 }
 
 static void slice_borders(struct surface_lines *lines, struct part *part, struct sides_work *work,
@@ -171,8 +174,7 @@ static void slice_faces(struct surface_lines *lines, size_t slice)
     struct tracer tracer = {.work = work_of(lines),
                             .squares = trace_squares_take(),
                             .tolerance = lines->tolerance,
-                            .most_points = room / sizeof(struct traced_point),
-                            .cancelled = &lines->base.cancelled};
+                            .most_points = room / sizeof(struct traced_point)};
     const struct border_roots borders = {&lines->vertices, lines->sign, lines->first, lines->root};
     size_t first = slice * FACES_OF_SLICE, last = first + FACES_OF_SLICE;
     if (!tracer.squares) {

@@ -54,7 +54,7 @@ struct cells {
     struct cell_root *pool;
     int n_pool;
     int n_cells;
-    bool overflows; /* one of the limits above was reached */
+    bool overflows; /* one of the line's limits above was reached */
 };
 
 struct trace_square *trace_squares_take(void)
@@ -299,7 +299,7 @@ static int find_on_spoke(struct cells *cells, struct trace_square *square, int e
         crossings_init(&square->spokes[e], on, &segment);
         square->spoke_field[e] = cells->field;
     }
-    return crossings_find(&square->spokes[e], on, line, negative, at);
+    return crossings_find(&square->spokes[e], on, line, negative, at, &cells->march.tracer->n_work);
 }
 
 static struct cell_side spoke(struct cells *cells, struct trace_square *square, int e,
@@ -399,9 +399,18 @@ static bool mark_flat(struct cells *cells)
     return true;
 }
 
+/* Counts a square that is to be halved. False if one of the limits above was reached. */
+static bool may_split(struct cells *cells)
+{
+    return ++cells->n_cells <= MOST_CELLS && ++cells->march.tracer->n_work <= TRACE_MOST_WORK &&
+           !cells->overflows;
+}
+
 static void trace_cell(struct cells *cells, const struct cell *cell)
 {
     struct tracer *tracer = cells->march.tracer;
+    if (*tracer->work.cancelled)
+        return;
     const struct field_line *line = &tracer->work.set->line[cells->march.line];
     int roots = n_roots(cell);
     double range[RANGE_SIZE];
@@ -427,8 +436,7 @@ static void trace_cell(struct cells *cells, const struct cell *cell)
         trace_graph(cells, cell, 0, by_v);
     else if (by_u)
         trace_graph(cells, cell, 1, by_u);
-    else if (is_overflow || cell->depth == MOST_DEPTH || ++cells->n_cells > MOST_CELLS ||
-             cells->overflows)
+    else if (is_overflow || cell->depth == MOST_DEPTH || !may_split(cells))
         mark(cells, cell);
     else if (cell->depth > 0 || !mark_flat(cells))
         split(cells, cell);
@@ -492,6 +500,7 @@ void trace_patch(struct tracer *tracer, const struct limit_patch *patch,
     struct bezier bezier;
     int n_squares = 0;
     bezier_of_patch(&bezier, tracer->work.tables, patch);
+    tracer->n_work = 0;
     struct cells cells = {.march = {.tracer = tracer, .place = place},
                           .n_squares = &n_squares,
                           .first_mark = tracer->out.n_marks,
@@ -505,7 +514,7 @@ void trace_patch(struct tracer *tracer, const struct limit_patch *patch,
         cells.field = (int)f;
         find_terms(&cells, whole);
         for (uint32_t i = set->first_line[f]; i < set->first_line[f + 1]; i++) {
-            if (*tracer->cancelled || tracer->work.failed)
+            if (*tracer->work.cancelled || tracer->work.failed)
                 break;
             if (field_quick_sign(&whole->terms, &set->line[i]) && !has_roots(region, i))
                 continue;

@@ -2,8 +2,6 @@
 #ifndef SHEEN_LINES_TRACER_H
 #define SHEEN_LINES_TRACER_H
 
-#include <stdatomic.h>
-
 #include "server/curves/lines/sides.h"
 
 /* A point of a line. */
@@ -22,7 +20,7 @@ struct traced_arc {
 };
 
 enum traced_mark_kind {
-    MARK_SINGULAR, /* lines meet, or a line is a point; or the square is too small to decide */
+    MARK_SINGULAR, /* lines meet, or a line is a point; or a limit was reached before it was decided */
     MARK_FLAT,     /* the line is a whole part of the surface */
 };
 
@@ -43,14 +41,19 @@ struct traced {
 void traced_finish(struct traced *traced);
 size_t traced_bytes(const struct traced *traced);
 
+/* For all lines on one patch together: squares that are halved, parts of their sides where ranges cannot tell the sign of F,
+ * and steps of Newton's method beyond the usual number. Beyond this many, what is undecided is marked. Where the normal is
+ * little more than rounding, lines wind so much that those of one patch took more than a minute. */
+enum { TRACE_MOST_WORK = 1 << 18 };
+
 struct tracer {
     struct sides_work work;
     struct trace_square *squares; /* trace_squares_take() */
     double tolerance;   /* greatest distance between a polyline and its line, world units */
     size_t most_points; /* room for points; with more, is_over and work.failed are set */
     bool is_over;
-    const atomic_bool *cancelled; /* tracing stops soon once it is true */
     struct traced out;
+    size_t n_work;             /* on the patch so far; see TRACE_MOST_WORK */
     size_t n_cells, n_deepest; /* squares looked at; the most often halved one */
 };
 
