@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "server/base/clock.h"
+#include "server/scene/request_check.h"
 #include "server/scene/scene_convert.h"
 
 const struct compute_kind *compute_kind_of(uint8_t type)
@@ -126,7 +127,8 @@ static void start(struct compute *compute)
 {
     struct request *request = compute->request;
     struct request_host *host = request->host;
-    compute->computation = compute->kind->create(compute, &request->failure);
+    if (request_check_view(&compute->scene, &request->failure))
+        compute->computation = compute->kind->create(compute, &request->failure);
     if (!compute->computation) {
         request_fail(request, &request->failure);
         return;

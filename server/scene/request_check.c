@@ -186,6 +186,18 @@ static bool check_planes(const struct frame_request *request, struct error *erro
                      "planes: coverage is known for the exact surface with antialiasing only");
 }
 
+bool request_check_view(const struct frame_request *request, struct error *error)
+{
+    if (!check_camera_place(&request->camera, error))
+        return request->has_chosen_camera && blame_model(request, "camera", error);
+    if (!check_lens(&request->camera, error) || !check_lines(&request->lines, error))
+        return false;
+    for (uint32_t i = 0; i < request->n_lights; i++)
+        if (!check_light(&request->lights[i], error))
+            return request->lights[i].is_chosen && blame_model(request, "light", error);
+    return true;
+}
+
 bool request_check(const struct frame_request *request, uint32_t max_width_px,
                    uint32_t max_height_px, struct error *error)
 {
@@ -200,15 +212,11 @@ bool request_check(const struct frame_request *request, uint32_t max_width_px,
         return false;
     if (!check_window(request, error))
         return false;
-    if (!check_camera_place(&request->camera, error))
-        return request->has_chosen_camera && blame_model(request, "camera", error);
-    if (!check_lens(&request->camera, error) || !check_lines(&request->lines, error))
+    if (!request_check_view(request, error))
         return false;
     for (uint32_t i = 0; i < request->n_lights; i++)
-        if (!check_light(&request->lights[i], error))
-            return request->lights[i].is_chosen && blame_model(request, "light", error);
-        else if (!check_pattern(&request->lights[i].pattern, error) ||
-                 !check_eye_off_light(request, &request->lights[i], error))
+        if (!check_pattern(&request->lights[i].pattern, error) ||
+            !check_eye_off_light(request, &request->lights[i], error))
             return false;
     return check_colour(request->miss, "miss", error) &&
            check_colour(request->empty, "empty", error) &&

@@ -11,4 +11,9 @@
 bool request_check(const struct frame_request *request, uint32_t max_width_px,
                    uint32_t max_height_px, struct error *error);
 
+/* The part of request_check() that does not depend on a picture: checks camera, lines and the
+ * places of the lights. False with ERROR_REQUEST; where camera or light were chosen by the model's
+ * box, the error blames the model's size. */
+bool request_check_view(const struct frame_request *request, struct error *error);
+
 #endif

@@ -105,6 +105,19 @@ class Comparisons(DaemonCase):
                 self.compared(client, cube, cube, extra)
             self.assertEqual(caught.exception.code, wire.ERROR_REQUEST)
 
+    def test_a_model_of_no_usual_size(self):
+        """A camera or a light chosen by the model cannot have its size: that is refused, and the session goes on."""
+        client = self.client()
+        cube = client.upload(CUBE, "cube.obj")
+        for size, what in ((b"9e29", "camera"), (b"1e29", "light"), (b"1e-20", "light")):
+            other = client.upload(re.sub(rb"(?m)^v.*$", lambda line: line[0].replace(b"1", size), CUBE), "other.obj")
+            with self.assertRaises(wire.Refused) as caught:
+                self.compared(client, other, cube)
+            self.assertEqual(caught.exception.code, wire.ERROR_REQUEST)
+            self.assertIn(f"units, for which no {what} can be chosen", caught.exception.text)
+        answer = self.compared(client, cube, cube)
+        self.assertEqual(self.number(self.measure(answer, OLD, DISTANCE), WORST), 0)
+
     def test_an_unknown_second_model(self):
         client = self.client()
         cube = client.upload(CUBE, "cube.obj")

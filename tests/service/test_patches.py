@@ -98,6 +98,24 @@ class Patches(DaemonCase):
                 self.assertEqual(pair[side + "_samples"]["uncovered_area"], 0)
             self.assertAlmostEqual(abs(pair["measures"]["distance"]["worst"]), 0.05, delta=1e-3)
 
+    def test_a_model_of_no_usual_size(self):
+        """A camera or a light that is chosen by the model cannot have its size. Given ones are used."""
+        huge = self.write("huge.patches", "patches 1\nbezier 1 1\n-9e29 -9e29 0  9e29 -9e29 0  -9e29 9e29 0  9e29 9e29 1e29\n")
+        for command in (["lines", huge, "-o", os.path.join(self.folder, "huge.svg")], ["breaks", huge],
+                        ["compare", huge, huge], ["compare", BOTTLE, huge, "--eye", "0,0,1e31"]):
+            done = self.sheen(*command, code=2)
+            if command[1] == huge:
+                self.assertRegex(done.stderr, "the model's box has a diagonal of .* for which no camera can be chosen .*: "
+                                              "scale the model, or give the camera")
+            self.assertEqual(len(done.stderr.splitlines()), 1)
+        given = ["--eye=0,0,1e30", "--target=0,0,0", "--up=0,1,0", "--light=rectangle", "--light-center=0,0,1e30",
+                 "--light-u=1e18,0,0", "--light-v=0,1e18,0", "--json"]
+        same, = json.loads(self.sheen("compare", huge, huge, "--samples", "2000", *given).stdout)["pairs"]
+        self.assertEqual(same["verdict"], "same")
+        self.assertAlmostEqual(same["old_samples"]["area"] / 3.24e60, 1, delta=0.01)
+        self.assertGreater(same["floor"]["distance"], 1e20)
+        self.sheen("breaks", huge, *given)
+
     def test_lines(self):
         """Of the bottle without its bottom: lines go on across smooth joints, so that they end at open borders, or
         where no ray meets the light."""

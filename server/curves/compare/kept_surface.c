@@ -154,7 +154,7 @@ void kept_surface_fill(struct kept_surface *surface, size_t leaf)
         kept_surface_evaluate(surface, leaf, k & 1 ? 0.75 : 0.25, k & 2 ? 0.75 : 0.25, &at);
         area += 0.25 * vec_length(vec_cross(at.su, at.sv));
     }
-    to->area = isfinite(area) ? (float)area : 0;
+    to->area = isfinite(area) ? area : 0;
 }
 
 unsigned kept_surface_parts(const struct kept_surface *surface, size_t leaf,

@@ -27,11 +27,11 @@ struct rigid_motion {
 struct kept_leaf {
     uint32_t node;
     uint32_t first_level; /* in kept_surface.levels */
+    double area;          /* estimated */
+    uint32_t corner;      /* only for a CORNER: its number among the CORNERs, from 0 */
     /* Number of levels that are parts, from level 1; 1 for a REGULAR node (level 0). */
     uint8_t n_levels;
-    uint8_t n_kept;  /* number of levels whose points are kept, at least n_levels */
-    float area;      /* estimated */
-    uint32_t corner; /* only for a CORNER: its number among the CORNERs, from 0 */
+    uint8_t n_kept; /* number of levels whose points are kept, at least n_levels */
 };
 
 struct kept_surface {

@@ -248,7 +248,7 @@ static void set_floors(struct comparison *comparison)
     double area = 0;
     for (int k = 0; k < COMPARISON_SIDES; k++)
         for (size_t i = 0; i < comparison->part[k].surface.n_leaves; i++)
-            area = fmax(area, (double)comparison->part[k].surface.leaves[i].area);
+            area = fmax(area, comparison->part[k].surface.leaves[i].area);
     comparison->result.distance_floor = 6e-8 * 3 * sqrt(area);
     comparison->result.normal_floor_deg = 2e-5;
 }

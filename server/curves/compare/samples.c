@@ -31,7 +31,7 @@ static size_t spread(struct surface_samples *samples, double density)
 {
     size_t total = 0;
     for (size_t leaf = 0; leaf < samples->surface->n_leaves; leaf++) {
-        double side = ceil(sqrt(density * (double)samples->surface->leaves[leaf].area));
+        double side = ceil(sqrt(density * samples->surface->leaves[leaf].area));
         samples->sides[leaf] = (uint16_t)fmin(fmax(side, 1), MOST_SIDE);
         samples->first[leaf] = total;
         total += count_leaf(samples, leaf);
@@ -54,7 +54,7 @@ bool surface_samples_init(struct surface_samples *samples, const struct kept_sur
         samples->least /= 2;
     double area = 0;
     for (size_t leaf = 0; leaf < surface->n_leaves; leaf++)
-        area += (double)surface->leaves[leaf].area;
+        area += surface->leaves[leaf].area;
     /* The number grows with the density, from the least number on: bisection of its logarithm. */
     double low = 0, high = area > 0 ? 4 * (double)n_samples / area : 0, density = high / 4;
     for (int step = 0; step < 8 && high > 0; step++) {
