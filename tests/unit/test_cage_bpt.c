@@ -76,13 +76,7 @@ static void test_patches_against_each_other(void **state)
 
 static void expect_refusal(const char *text, size_t size, const char *words)
 {
-    struct cage cage;
-    struct error error = {0};
-    if (cage_read(&cage, text, size, "part.bpt", &error))
-        fail_msg("accepted: %s", text);
-    assert_int_equal(error.kind, ERROR_MODEL);
-    if (!strstr(error.text, words) || strchr(error.text, '\n'))
-        fail_msg("'%s' says '%s', not '%s'", text, error.text, words);
+    expect_cage_refused_with(text, size, "part.bpt", words);
 }
 
 static const struct {
