@@ -137,31 +137,24 @@ class Workers(unittest.TestCase):
 
         self.refused((), "its process was stopped: try again later", stop_its_processes)
 
-    def test_worker_time(self):
-        """A megabyte that takes seconds to decode, as below."""
-        daemon = Daemon("--worker-time", "1", tcp=False)
+    def refused_slow_image(self, option, why):
+        """A megabyte that takes seconds to decode: an interlaced picture."""
+        daemon = Daemon(option, "1", tcp=False)
         with Client(daemon.unix, timeout=60) as client:
             model = client.upload(CUBE, "cube.obj")
             image = client.upload(interlaced_png(12000, 8000), "slow.png", wire.IMAGE)
             client.send(wire.render(70, model, extra=image_pattern(image)))
             with self.assertRaises(wire.Refused) as caught:
                 client.read_frame(70)
-            self.assertIn("slow.png: not done in 1 s", caught.exception.text)
+            self.assertIn("slow.png: " + why, caught.exception.text)
             client.render(model)
         self.assertEqual(daemon.stop(), 0)
 
+    def test_worker_time(self):
+        self.refused_slow_image("--worker-time", "not done in 1 s")
+
     def test_worker_cpu(self):
-        """A megabyte that takes seconds to decode: an interlaced picture."""
-        daemon = Daemon("--worker-cpu", "1", tcp=False)
-        with Client(daemon.unix, timeout=60) as client:
-            model = client.upload(CUBE, "cube.obj")
-            image = client.upload(interlaced_png(12000, 8000), "slow.png", wire.IMAGE)
-            client.send(wire.render(70, model, extra=image_pattern(image)))
-            with self.assertRaises(wire.Refused) as caught:
-                client.read_frame(70)
-            self.assertIn("slow.png: more than 1 s of processor time", caught.exception.text)
-            client.render(model)
-        self.assertEqual(daemon.stop(), 0)
+        self.refused_slow_image("--worker-cpu", "more than 1 s of processor time")
 
     @staticmethod
     def slow(comment=""):
