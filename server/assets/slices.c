@@ -27,6 +27,11 @@ void slices_done(struct slices *slices, struct slice_source *source, uint64_t to
     turn_charge(&source->turn, (int64_t)took_us - SLICE_US);
 }
 
+void slices_beat(void)
+{
+    pool_beat();
+}
+
 static bool is_wet(const struct turn *turn, void *context)
 {
     (void)context;

@@ -35,6 +35,8 @@ void slices_join(struct slices *slices, struct slice_source *source);
 void slices_leave(struct slices *slices, struct slice_source *source);
 /* Reports that a slice of this source is done and took took_us. */
 void slices_done(struct slices *slices, struct slice_source *source, uint64_t took_us);
+/* For the thread of a slice that takes long: reports that the slice is alive (pool_beat()). */
+void slices_beat(void);
 /* Submits slices until the pool has enough. Call it last, after any of the functions above. */
 void slices_start(struct slices *slices);
 

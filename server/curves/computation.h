@@ -26,7 +26,9 @@ struct computation_kind {
     bool (*begin)(struct computation *computation, unsigned phase, size_t *n_slices,
                   struct error *error);
     /* Runs one slice, a few milliseconds of work, of the phase that begin() prepared last. Returns early when
-     * `cancelled` is set. Thread: any; different slices of a phase run at the same time. */
+     * `cancelled` is set. A slice whose work takes longer may return before its work is done, and set `repeats`: the
+     * phase is then begun again when all its slices have run. Thread: any; different slices of a phase run at the same
+     * time. */
     void (*slice)(struct computation *computation, size_t slice);
     /* Frees the computation. No slice is running. */
     void (*destroy)(struct computation *computation);
@@ -35,7 +37,18 @@ struct computation_kind {
 struct computation {
     const struct computation_kind *kind;
     atomic_bool cancelled; /* any thread sets it; the result is then undefined */
+    atomic_bool repeats;   /* a slice sets it; who runs the computation clears it */
+    /* Called by slices while they work: their thread is alive, however long one search takes. NULL: nobody asks. Who runs
+     * the computation sets it before the first slice. */
+    void (*beat)(void);
 };
+
+/* For slices, after each few microseconds of work or more: calls beat(), and returns true if the computation was
+ * cancelled. */
+bool computation_is_cancelled(struct computation *computation);
+
+/* True if the phase whose slices have all run must be begun again; asks and clears. */
+bool computation_repeats(struct computation *computation);
 
 /* Runs all phases on the calling thread. False with *error: a phase could not begin, or the computation was
  * cancelled (ERROR_SERVER). */

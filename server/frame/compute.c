@@ -133,6 +133,7 @@ static void start(struct compute *compute)
         request_fail(request, &request->failure);
         return;
     }
+    compute->computation->beat = slices_beat;
     host->n_computing++;
     request->party->n_computing++;
     leave_line(compute);
@@ -230,7 +231,7 @@ static void end_step(struct compute *compute)
         compute->next_slice = compute->n_done = 0;
         return;
     }
-    compute->phase++;
+    compute->phase += !computation_repeats(compute->computation);
     compute->n_slices = compute->next_slice = compute->n_done = 0;
     compute->step = stages[compute->phase] ? COMPUTE_BEGIN : COMPUTE_PACK;
 }

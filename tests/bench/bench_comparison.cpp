@@ -43,7 +43,8 @@ void run(const comparison_setup &setup, int n_threads)
 {
     error error = {};
     computation *computation = comparison_create(&setup, &error);
-    for (unsigned phase = 0; computation && computation->kind->stages[phase]; phase++) {
+    for (unsigned phase = 0; computation && computation->kind->stages[phase];
+         phase += !computation_repeats(computation)) {
         size_t n_slices = 0;
         if (!computation->kind->begin(computation, phase, &n_slices, &error))
             throw std::runtime_error(error.text);

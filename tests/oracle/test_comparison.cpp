@@ -560,16 +560,23 @@ void judge_computation(verdict *verdict)
     setup.has_curvature = true;
     comparison_result forwards = compare(setup);
     error error = {};
+    setup.task_us = 1; /* each sample interrupts its slice */
     computation *computation = comparison_create(&setup, &error);
-    for (unsigned phase = 0; computation->kind->stages[phase]; phase++) {
+    size_t n_begun = 0;
+    bool has_begun = true;
+    for (unsigned phase = 0; computation->kind->stages[phase];
+         phase += !computation_repeats(computation)) {
         size_t n_slices = 0;
-        verdict->check(computation->kind->begin(computation, phase, &n_slices, &error),
-                       "a phase begins");
+        n_begun++;
+        has_begun &= computation->kind->begin(computation, phase, &n_slices, &error);
         while (n_slices-- > 0)
             computation->kind->slice(computation, n_slices);
     }
+    verdict->check(has_begun, "each phase begins");
     verdict->check(std::memcmp(&forwards, comparison_read(computation), sizeof forwards) == 0,
-                   "slices in another order give another result");
+                   "interrupted slices in another order give another result");
+    verdict->check(n_begun > 1000, "slices of samples are interrupted");
+    setup.task_us = 0;
     computation_destroy(computation);
     verdict->check(forwards.side[0].figures[COMPARISON_CURVATURE].is_known,
                    "curvature was asked for");

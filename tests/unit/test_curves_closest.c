@@ -259,12 +259,46 @@ static void test_crease(void **state)
     close_scene(&scene);
 }
 
+static unsigned beats;
+
+static void count_beat(void)
+{
+    beats++;
+}
+
+/* From the middle of a body most of the surface is about equally far, so a single search takes long: it tells that it is
+ * alive, and ends when it is cancelled. */
+static void test_long_search(void **state)
+{
+    (void)state;
+    struct scene scene;
+    struct closest found;
+    struct computation computation = {.beat = count_beat};
+    build_file("tests/models/body.obj", &scene.tables);
+    open_scene(&scene);
+    const double *low = scene.tables.box_min, *high = scene.tables.box_max;
+    const struct vec middle = {0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]),
+                               0.5 * (low[2] + high[2])};
+    scene.tree.computation = &computation;
+    beats = 0;
+    closest_nearest(&scene.tree, middle, &found);
+    assert_int_equal(found.kind, CLOSEST_NEAR);
+    unsigned n = beats;
+    assert_true(n > 10);
+    atomic_store(&computation.cancelled, true);
+    beats = 0;
+    closest_nearest(&scene.tree, middle, &found);
+    assert_int_equal(beats, 1);
+    close_scene(&scene);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_random_points),
         cmocka_unit_test(test_pole),
         cmocka_unit_test(test_crease),
+        cmocka_unit_test(test_long_search),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

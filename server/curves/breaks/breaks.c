@@ -204,7 +204,7 @@ static void slice(struct computation *computation, size_t index)
     };
     const size_t items = phases[breaks->phase].items, n = phases[breaks->phase].n;
     const size_t first = index * items, last = n - first < items ? n : first + items;
-    for (size_t i = first; i < last && !atomic_load(&computation->cancelled); i++)
+    for (size_t i = first; i < last && !computation_is_cancelled(computation); i++)
         phases[breaks->phase].measure(breaks, i);
 }
 

@@ -7,7 +7,7 @@
 
 #include "server/curves/compare/closest.h"
 
-enum { ALIGN_PAIRS = 20000, ALIGN_PAIRS_OF_SLICE = 50, ALIGN_ROUNDS = 10 };
+enum { ALIGN_PAIRS = 20000, ALIGN_PAIRS_OF_SLICE = 20, ALIGN_ROUNDS = 10 };
 
 /* A point of the moved surface; the distance of its counterpart along the counterpart's normal. */
 struct align_pair {

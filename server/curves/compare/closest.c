@@ -196,7 +196,7 @@ static const struct tree_box *box_of(const struct surface_tree *tree, unsigned d
 
 static bool is_cancelled(const struct surface_tree *tree)
 {
-    return tree->cancelled && atomic_load_explicit(tree->cancelled, memory_order_relaxed);
+    return tree->computation && computation_is_cancelled(tree->computation);
 }
 
 static void meet_tree(struct search *search)
@@ -205,11 +205,13 @@ static void meet_tree(struct search *search)
     struct visit stack[MOST_DEPTH];
     int n = 0;
     stack[n++] = (struct visit){0, 0, enter(search, box_of(tree, 0, 0))};
-    while (n > 0 && !is_cancelled(tree)) {
+    while (n > 0) {
         struct visit at = stack[--n];
         if (!(at.distance <= search->reach))
             continue;
         if (at.depth == tree->depth) {
+            if (is_cancelled(tree))
+                return;
             meet_pieces(search, tree_first(tree, at.depth, at.j),
                         tree_first(tree, at.depth, at.j + 1));
             continue;
@@ -386,11 +388,13 @@ static void approach_tree(struct near_search *search)
     struct visit stack[MOST_DEPTH];
     int n = 0;
     stack[n++] = (struct visit){0, 0, 0};
-    while (n > 0 && !is_cancelled(tree)) {
+    while (n > 0) {
         struct visit at = stack[--n];
         if (!(at.distance < near_limit(search)))
             continue;
         if (at.depth == tree->depth) {
+            if (is_cancelled(tree))
+                return;
             size_t end = tree_first(tree, at.depth, at.j + 1);
             for (size_t i = tree_first(tree, at.depth, at.j); i < end; i++)
                 approach_piece(search, &tree->pieces[i]);

@@ -32,6 +32,9 @@ struct comparison_setup {
     double limit[COMPARISON_MEASURES];
     size_t n_samples;  /* of both sides together, about */
     size_t most_bytes; /* of memory */
+    /* A slice of samples returns after this time, in microseconds, and goes on when its phase is repeated; 0: 20 ms. The
+     * result does not depend on it. */
+    uint64_t task_us;
 };
 
 struct comparison_place {

@@ -10,6 +10,9 @@
 /* The worst samples that are refined for each measure, one of each leaf; and how many of them a slice keeps. */
 enum { WORST = 32, WORST_OF_SLICE = 8 };
 
+/* Samples of leaves that tell how the new surface is wound as a whole. */
+enum { WINDING_SAMPLES = 512 };
+
 /* A place of a leaf on one side, and the values there. NAN: not defined. */
 struct comparison_values {
     struct limit_point from;
@@ -34,6 +37,23 @@ struct sample_sums {
     struct worst_sample worst[COMPARISON_MEASURES][WORST_OF_SLICE];
 };
 
+/* How far one slice of samples has come. */
+struct sample_progress {
+    bool is_begun, is_in_leaf, is_done;
+    size_t leaf, index;    /* of the next sample */
+    unsigned part, sample; /* of the leaf's parts, and of the part's samples: the next one */
+    double before;         /* the area before the leaf's last level */
+    struct worst_sample worst[COMPARISON_MEASURES]; /* of this leaf */
+    struct closest_start last;                      /* counterpart of the sample before */
+};
+
+/* How far the refinement of one of the worst samples has come. */
+struct refine_progress {
+    bool is_begun;
+    double margin[2], step;
+    int halved, tries;
+};
+
 /* One side: its samples, which look at the other side. */
 struct comparison_part {
     struct kept_surface surface;
@@ -43,13 +63,19 @@ struct comparison_part {
     float *values[COMPARISON_MEASURES]; /* [samples]; NULL: not asked for */
     size_t *slice_first;                /* [n_slices + 1]: first leaf of each slice of samples */
     size_t n_slices;
-    struct sample_sums *sums; /* [n_slices] */
+    struct sample_sums *sums;         /* [n_slices] */
+    struct sample_progress *progress; /* [n_slices] */
     struct worst_sample worst[COMPARISON_MEASURES][WORST];
+    struct refine_progress refined[COMPARISON_MEASURES][WORST];
 };
 
 struct comparison {
     struct computation base;
-    unsigned phase; /* that begin() has prepared */
+    unsigned phase;                       /* that begin() has prepared */
+    bool is_repeat;                       /* the phase was begun before */
+    signed char winding[WINDING_SAMPLES]; /* of each sample: 1 the same, -1 reversed, 0 unknown */
+    size_t *open; /* the slices of samples that are not done; those of the new side come after */
+    size_t n_open;
     struct comparison_setup setup;
     struct comparison_part part[COMPARISON_SIDES];
     struct closest_rules rules;

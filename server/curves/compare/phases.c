@@ -11,6 +11,7 @@ enum phase {
     PHASE_DIVIDE, /* counts the pieces of their trees */
     PHASE_FILL,
     PHASE_SORT,
+    PHASE_WINDING,
     PHASE_ALIGN,                               /* ALIGN_ROUNDS phases */
     PHASE_REFILL = PHASE_ALIGN + ALIGN_ROUNDS, /* the moved surface's tree once more */
     PHASE_RESORT,
@@ -20,13 +21,17 @@ enum phase {
     PHASES,
 };
 static const char *const STAGES[PHASES + 1] = {
-    "surfaces", "trees",    "trees",    "trees",    "aligning", "aligning", "aligning",
+    "surfaces", "trees",    "trees",    "trees",    "winding",  "aligning", "aligning",
     "aligning", "aligning", "aligning", "aligning", "aligning", "aligning", "aligning",
-    "trees",    "trees",    "samples",  "maxima",   "figures",
+    "aligning", "trees",    "trees",    "samples",  "maxima",   "figures",
 };
 _Static_assert(ALIGN_ROUNDS == 10, "STAGES names ten rounds");
 
-enum { LEAVES_OF_SLICE = 64, SAMPLES_OF_SLICE = 1000, WINDING_SAMPLES = 512 };
+enum { LEAVES_OF_SLICE = 64, SAMPLES_OF_SLICE = 1000, WINDING_OF_SLICE = 4 };
+
+/* One search among pieces that are all equally near takes as long as thousands of others, so slices of samples end by time
+ * as well. */
+static const uint64_t TASK_US = 20000;
 
 /* The limit of the distance by which counterparts are chosen, as a multiple: how far along the normal they may lie, and
  * within how much a face that is wound differently counts. */
@@ -102,7 +107,7 @@ static bool begin_divide(struct comparison *comparison, size_t *n_slices, struct
         struct comparison_part *part = &comparison->part[k];
         if (!surface_tree_init(&part->tree, &part->surface, error))
             return false;
-        part->tree.cancelled = &comparison->base.cancelled;
+        part->tree.computation = &comparison->base;
         *n_slices += leaf_slices(part);
     }
     return true;
@@ -134,13 +139,25 @@ static void sort_subtree(struct comparison *comparison, size_t slice)
     surface_tree_sort(&comparison->part[slice >= old].tree, slice >= old ? slice - old : slice);
 }
 
-/* Is the new surface as a whole wound the other way around? By samples, one of each of several leaves. */
-static void find_winding(struct comparison *comparison)
+static size_t n_winding(const struct comparison *comparison)
+{
+    size_t n = comparison->part[COMPARISON_OLD].surface.n_leaves;
+    return n < WINDING_SAMPLES ? n : WINDING_SAMPLES;
+}
+
+static void begin_winding(struct comparison *comparison, size_t *n_slices)
+{
+    for (int k = 0; k < COMPARISON_SIDES; k++)
+        surface_tree_join(&comparison->part[k].tree);
+    *n_slices = (n_winding(comparison) + WINDING_OF_SLICE - 1) / WINDING_OF_SLICE;
+}
+
+/* Whether the new surface is wound the other way around at the samples of a slice, each in the middle of a leaf. */
+static void find_winding(struct comparison *comparison, size_t slice)
 {
     const struct kept_surface *old = &comparison->part[COMPARISON_OLD].surface;
-    size_t n = old->n_leaves < WINDING_SAMPLES ? old->n_leaves : WINDING_SAMPLES;
-    double agree = 0;
-    for (size_t i = 0; i < n; i++) {
+    size_t n = n_winding(comparison), first = slice * WINDING_OF_SLICE;
+    for (size_t i = first; i < first + WINDING_OF_SLICE && i < n; i++) {
         struct limit_point at;
         struct closest to;
         kept_surface_evaluate(old, i * old->n_leaves / n, 0.5, 0.5, &at);
@@ -148,8 +165,15 @@ static void find_winding(struct comparison *comparison)
             continue;
         closest_nearest(&comparison->part[COMPARISON_NEW].tree, at.s, &to);
         if (to.kind != CLOSEST_NONE && to.at.has_normal)
-            agree += vec_dot(at.n, to.at.n) < 0 ? -1 : 1;
+            comparison->winding[i] = vec_dot(at.n, to.at.n) < 0 ? -1 : 1;
     }
+}
+
+static void sum_winding(struct comparison *comparison)
+{
+    int agree = 0;
+    for (size_t i = 0; i < WINDING_SAMPLES; i++)
+        agree += comparison->winding[i];
     comparison->rules.winding = agree < 0 ? -1 : 1;
     comparison->result.is_rewound = agree < 0;
 }
@@ -159,11 +183,8 @@ static bool begin_align(struct comparison *comparison, unsigned round, size_t *n
                         struct error *error)
 {
     struct alignment *alignment = &comparison->alignment;
-    if (round == 0) {
-        for (int k = 0; k < COMPARISON_SIDES; k++)
-            surface_tree_join(&comparison->part[k].tree);
-        find_winding(comparison);
-    }
+    if (round == 0)
+        sum_winding(comparison);
     if (!comparison->setup.is_aligned || alignment->is_done)
         return true;
     if (round == 0 && !alignment_init(alignment, comparison->result.size, error))
@@ -202,7 +223,8 @@ static bool cut_samples(struct comparison_part *part, struct error *error)
            most = surface_samples_count(samples) / SAMPLES_OF_SLICE + 1;
     part->slice_first = calloc(most + 2, sizeof *part->slice_first);
     part->sums = calloc(most + 1, sizeof *part->sums);
-    if (!part->slice_first || !part->sums)
+    part->progress = calloc(most + 1, sizeof *part->progress);
+    if (!part->slice_first || !part->sums || !part->progress)
         return error_set(error, ERROR_SERVER, "no memory for the samples of a surface");
     part->n_slices = 0;
     for (size_t leaf = 0; leaf < n_leaves; leaf++) {
@@ -253,16 +275,38 @@ static void set_floors(struct comparison *comparison)
     comparison->result.normal_floor_deg = 2e-5;
 }
 
+/* Lists the slices of samples that are not done. */
+static void list_open(struct comparison *comparison)
+{
+    size_t slice = 0;
+    comparison->n_open = 0;
+    for (int k = 0; k < COMPARISON_SIDES; k++)
+        for (size_t i = 0; i < comparison->part[k].n_slices; i++, slice++)
+            if (!comparison->part[k].progress[i].is_done)
+                comparison->open[comparison->n_open++] = slice;
+}
+
 static bool begin_sample(struct comparison *comparison, size_t *n_slices, struct error *error)
 {
+    size_t n = 0;
+    if (comparison->is_repeat) {
+        list_open(comparison);
+        *n_slices = comparison->n_open;
+        return true;
+    }
     if (comparison->setup.is_aligned)
         surface_tree_join(&comparison->part[COMPARISON_NEW].tree);
     set_floors(comparison);
     for (int k = 0; k < COMPARISON_SIDES; k++) {
         if (!begin_part(comparison, (enum comparison_side)k, error))
             return false;
-        *n_slices += comparison->part[k].n_slices;
+        n += comparison->part[k].n_slices;
     }
+    comparison->open = calloc(n + 1, sizeof *comparison->open);
+    if (!comparison->open)
+        return error_set(error, ERROR_SERVER, "no memory for the samples of a surface");
+    list_open(comparison);
+    *n_slices = comparison->n_open;
     return true;
 }
 
@@ -271,6 +315,7 @@ static bool begin(struct computation *computation, unsigned phase, size_t *n_sli
 {
     struct comparison *comparison = (struct comparison *)computation;
     *n_slices = 0;
+    comparison->is_repeat = comparison->phase == phase;
     comparison->phase = phase;
     if (phase >= PHASE_ALIGN && phase < PHASE_REFILL)
         return begin_align(comparison, phase - PHASE_ALIGN, n_slices, error);
@@ -284,6 +329,9 @@ static bool begin(struct computation *computation, unsigned phase, size_t *n_sli
     case PHASE_SORT:
         begin_sort(comparison, n_slices);
         return true;
+    case PHASE_WINDING:
+        begin_winding(comparison, n_slices);
+        return true;
     case PHASE_REFILL:
         return begin_refill(comparison, n_slices, error);
     case PHASE_RESORT:
@@ -293,7 +341,7 @@ static bool begin(struct computation *computation, unsigned phase, size_t *n_sli
     case PHASE_SAMPLE:
         return begin_sample(comparison, n_slices, error);
     case PHASE_REFINE:
-        for (int k = 0; k < COMPARISON_SIDES; k++)
+        for (int k = 0; k < COMPARISON_SIDES && !comparison->is_repeat; k++)
             comparison_choose_worst(comparison, (enum comparison_side)k);
         *n_slices = COMPARISON_SIDES * COMPARISON_MEASURES * WORST;
         return true;
@@ -327,6 +375,9 @@ static void slice(struct computation *computation, size_t slice)
     case PHASE_SORT:
         sort_subtree(comparison, slice);
         break;
+    case PHASE_WINDING:
+        find_winding(comparison, slice);
+        break;
     case PHASE_REFILL:
         for_leaves(comparison, leaf_slices(&part[COMPARISON_OLD]) + slice, fill_leaf);
         break;
@@ -334,9 +385,10 @@ static void slice(struct computation *computation, size_t slice)
         surface_tree_sort(&part[COMPARISON_NEW].tree, slice);
         break;
     case PHASE_SAMPLE: {
-        bool is_new = slice >= part[COMPARISON_OLD].n_slices;
+        size_t open = comparison->open[slice], n_old = part[COMPARISON_OLD].n_slices;
+        bool is_new = open >= n_old;
         comparison_sample(comparison, is_new ? COMPARISON_NEW : COMPARISON_OLD,
-                          is_new ? slice - part[COMPARISON_OLD].n_slices : slice);
+                          is_new ? open - n_old : open);
         break;
     }
     case PHASE_REFINE: {
@@ -361,11 +413,13 @@ static void destroy(struct computation *computation)
             free(part->values[i]);
         free(part->slice_first);
         free(part->sums);
+        free(part->progress);
         surface_samples_finish(&part->samples);
         surface_tree_finish(&part->tree);
         kept_surface_finish(&part->surface);
     }
     alignment_finish(&comparison->alignment);
+    free(comparison->open);
     free(comparison);
 }
 
@@ -405,7 +459,10 @@ struct computation *comparison_create(const struct comparison_setup *setup, stru
     double limit = setup->limit[COMPARISON_DISTANCE],
            size = diagonal_of(setup->tables[COMPARISON_OLD]);
     comparison->base.kind = &kind;
+    comparison->phase = PHASES; /* none yet */
     comparison->setup = *setup;
+    if (setup->task_us == 0)
+        comparison->setup.task_us = TASK_US;
     comparison->rules = (struct closest_rules){1, fmin(REACH * limit, 0.1 * size),
                                                COINCIDENT * limit, TOLERANCE * limit};
     comparison->result.size = size;

@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "server/base/clock.h"
 #include "server/curves/compare/parts.h"
 
 /* Enters a sample in a list that is sorted by magnitude, worst first. */
@@ -19,10 +20,9 @@ static void enter_worst(struct worst_sample *list, size_t room, const struct wor
 struct leaf_samples {
     struct comparison *comparison;
     enum comparison_side side;
-    size_t leaf, index; /* of the next sample */
     struct sample_sums *sums;
-    struct worst_sample worst[COMPARISON_MEASURES]; /* of this leaf */
-    struct closest_start last;                      /* counterpart of the sample before */
+    struct sample_progress *progress;
+    uint64_t end_us; /* when the task ends, by clock_now_us() */
 };
 
 static void add_measures(struct leaf_samples *to, const struct comparison_values *at, double weight,
@@ -33,16 +33,21 @@ static void add_measures(struct leaf_samples *to, const struct comparison_values
         double value = at->value[k], magnitude = fabs(value);
         if (!part->values[k])
             continue;
-        part->values[k][to->index] = (float)magnitude;
+        part->values[k][to->progress->index] = (float)magnitude;
         if (!isfinite(value))
             continue;
         to->sums->weight[k] += weight;
         to->sums->square[k] += weight * value * value;
         if (magnitude > to->comparison->setup.limit[k])
             to->sums->out[k] += weight;
-        if (magnitude > to->worst[k].magnitude)
-            to->worst[k] = (struct worst_sample){
-                magnitude, value, to->leaf, x, y, step, {at->to.leaf, at->to.x, at->to.y}};
+        if (magnitude > to->progress->worst[k].magnitude)
+            to->progress->worst[k] = (struct worst_sample){magnitude,
+                                                           value,
+                                                           to->progress->leaf,
+                                                           x,
+                                                           y,
+                                                           step,
+                                                           {at->to.leaf, at->to.x, at->to.y}};
     }
 }
 
@@ -54,8 +59,8 @@ static void add_uncovered(struct leaf_samples *to, double area, double x, double
     if (area <= to->sums->largest_uncovered)
         return;
     to->sums->largest_uncovered = area;
-    to->sums->uncovered_at =
-        comparison_place_of(&to->comparison->part[to->side].surface, to->leaf, x, y, position);
+    to->sums->uncovered_at = comparison_place_of(&to->comparison->part[to->side].surface,
+                                                 to->progress->leaf, x, y, position);
 }
 
 /* True if the other surface covers the place. */
@@ -66,25 +71,25 @@ static bool add_sample(struct leaf_samples *to, double x, double y, double step,
                                  *other = &comparison->part[!to->side];
     struct comparison_values at;
     /* Revisions mostly keep their numbers: the search begins at the same place, until that was wrong. */
-    struct closest_start start = {to->leaf, x, y};
+    struct closest_start start = {to->progress->leaf, x, y};
     if (part->surface.n_leaves != other->surface.n_leaves ||
-        (to->last.leaf != SIZE_MAX && to->last.leaf != to->leaf))
-        start = to->last;
-    comparison_measure_at(comparison, to->side, to->leaf, x, y, &start, &at);
+        (to->progress->last.leaf != SIZE_MAX && to->progress->last.leaf != to->progress->leaf))
+        start = to->progress->last;
+    comparison_measure_at(comparison, to->side, to->progress->leaf, x, y, &start, &at);
     double weight = area > 0 ? area : vec_length(vec_cross(at.from.su, at.from.sv)) * -area;
     if (!isfinite(weight))
         weight = 0;
-    part->weights[to->index] = (float)weight;
+    part->weights[to->progress->index] = (float)weight;
     to->sums->area += weight;
     if (at.is_covered) {
-        to->last = (struct closest_start){at.to.leaf, at.to.x, at.to.y};
+        to->progress->last = (struct closest_start){at.to.leaf, at.to.x, at.to.y};
         to->sums->rewound += at.is_rewound ? weight : 0;
         to->sums->unlit += at.is_unlit ? weight : 0;
     } else {
         add_uncovered(to, weight, x, y, at.from.s);
     }
     add_measures(to, &at, weight, x, y, step);
-    to->index++;
+    to->progress->index++;
     return at.is_covered;
 }
 
@@ -104,8 +109,8 @@ static void find_borders(const struct kept_surface *surface, size_t leaf, bool i
 static void add_border_sample(struct leaf_samples *to, int edge, double x, double y, double width)
 {
     struct comparison_values at;
-    struct closest_start start = to->last;
-    comparison_measure_at(to->comparison, to->side, to->leaf, x, y, &start, &at);
+    struct closest_start start = to->progress->last;
+    comparison_measure_at(to->comparison, to->side, to->progress->leaf, x, y, &start, &at);
     if (at.is_covered || at.to.kind != CLOSEST_BORDER)
         return;
     double length = width * vec_length(edge % 2 ? at.from.sv : at.from.su);
@@ -131,52 +136,103 @@ static void add_border(struct leaf_samples *to, const struct kept_part *part,
         add_border_sample(to, 3, 0, y, dy);
 }
 
-static void sample_leaf(struct leaf_samples *to)
+static void begin_leaf(struct leaf_samples *to)
 {
-    const struct comparison_part *part = &to->comparison->part[to->side];
-    struct kept_part parts[KEPT_PARTS];
-    unsigned n = kept_surface_parts(&part->surface, to->leaf, parts), nx, ny;
-    bool is_border[EDGES];
-    find_borders(&part->surface, to->leaf, is_border);
+    struct sample_progress *at = to->progress;
+    const struct comparison_part *part = to->comparison->part;
     for (int k = 0; k < COMPARISON_MEASURES; k++)
-        to->worst[k].magnitude = -1;
-    if (part->surface.n_leaves == to->comparison->part[!to->side].surface.n_leaves)
-        to->last.leaf = SIZE_MAX;
-    double area_before = to->sums->area, last_level = 0;
-    for (unsigned k = 0; k < n; k++) {
-        surface_samples_grid(&part->samples, to->leaf, &parts[k], &nx, &ny);
-        double dx = parts[k].width / nx, dy = parts[k].height / ny;
-        if (k + 4 == n) /* the three patches before the rest */
-            area_before = to->sums->area;
-        last_level = to->sums->area - area_before;
-        if (parts[k].is_rest) { /* each level is three times what lies inside of it */
-            add_sample(to, 0, 0, 0.5 * parts[k].width, fmax(last_level / 3, 1e-300));
-            continue;
-        }
-        for (unsigned i = 0; i < nx * ny && !to->comparison->base.cancelled; i++)
-            if (add_sample(to, parts[k].x + (i % nx + 0.5) * dx, parts[k].y + (i / nx + 0.5) * dy,
-                           0.5 * fmax(dx, dy), -dx * dy))
-                add_border(to, &parts[k], is_border, nx, ny, i % nx, i / nx);
+        at->worst[k].magnitude = -1;
+    if (part[COMPARISON_OLD].surface.n_leaves == part[COMPARISON_NEW].surface.n_leaves)
+        at->last.leaf = SIZE_MAX;
+    at->before = to->sums->area;
+    at->part = at->sample = 0;
+    at->is_in_leaf = true;
+}
+
+/* True if the task must end: its time is over, or nobody waits for the result. */
+static bool is_interrupted(const struct leaf_samples *to)
+{
+    return to->comparison->base.cancelled || clock_now_us() >= to->end_us;
+}
+
+/* The samples of a part of the leaf, from where they were interrupted. False if they are interrupted again. */
+static bool sample_part(struct leaf_samples *to, const struct kept_part *of,
+                        const bool is_border[EDGES])
+{
+    struct sample_progress *at = to->progress;
+    unsigned nx, ny;
+    surface_samples_grid(&to->comparison->part[to->side].samples, at->leaf, of, &nx, &ny);
+    double dx = of->width / nx, dy = of->height / ny;
+    while (at->sample < nx * ny) {
+        unsigned i = at->sample % nx, j = at->sample / nx;
+        if (add_sample(to, of->x + (i + 0.5) * dx, of->y + (j + 0.5) * dy, 0.5 * fmax(dx, dy),
+                       -dx * dy))
+            add_border(to, of, is_border, nx, ny, i, j);
+        at->sample++;
+        if (is_interrupted(to))
+            return false;
+    }
+    return true;
+}
+
+/* False if the samples of the leaf are interrupted. */
+static bool sample_leaf(struct leaf_samples *to)
+{
+    struct sample_progress *at = to->progress;
+    const struct kept_surface *surface = &to->comparison->part[to->side].surface;
+    struct kept_part parts[KEPT_PARTS];
+    unsigned n = kept_surface_parts(surface, at->leaf, parts);
+    bool is_border[EDGES];
+    find_borders(surface, at->leaf, is_border);
+    if (!at->is_in_leaf)
+        begin_leaf(to);
+    for (; at->part < n; at->part++, at->sample = 0) {
+        const struct kept_part *of = &parts[at->part];
+        if (at->part + 4 == n && at->sample == 0) /* the three patches before the rest */
+            at->before = to->sums->area;
+        double last_level = to->sums->area - at->before;
+        if (of->is_rest) /* each level is three times what lies inside of it */
+            add_sample(to, 0, 0, 0.5 * of->width, fmax(last_level / 3, 1e-300));
+        else if (!sample_part(to, of, is_border))
+            return false;
     }
     for (int k = 0; k < COMPARISON_MEASURES; k++)
-        enter_worst(to->sums->worst[k], WORST_OF_SLICE, &to->worst[k]);
+        enter_worst(to->sums->worst[k], WORST_OF_SLICE, &at->worst[k]);
+    at->is_in_leaf = false;
+    return true;
+}
+
+static void begin_samples(const struct comparison_part *part, size_t slice)
+{
+    struct sample_sums *sums = &part->sums[slice];
+    *sums = (struct sample_sums){0};
+    for (int k = 0; k < COMPARISON_MEASURES; k++)
+        for (int i = 0; i < WORST_OF_SLICE; i++)
+            sums->worst[k][i].magnitude = -1;
+    size_t leaf = part->slice_first[slice];
+    part->progress[slice] = (struct sample_progress){.is_begun = true,
+                                                     .leaf = leaf,
+                                                     .index = part->samples.first[leaf],
+                                                     .last = {.leaf = SIZE_MAX}};
 }
 
 void comparison_sample(struct comparison *comparison, enum comparison_side side, size_t slice)
 {
     struct comparison_part *part = &comparison->part[side];
-    struct leaf_samples to = {.comparison = comparison, .side = side, .sums = &part->sums[slice]};
-    *to.sums = (struct sample_sums){0};
-    for (int k = 0; k < COMPARISON_MEASURES; k++)
-        for (int i = 0; i < WORST_OF_SLICE; i++)
-            to.sums->worst[k][i].magnitude = -1;
-    to.last.leaf = SIZE_MAX;
-    to.index = part->samples.first[part->slice_first[slice]];
-    for (to.leaf = part->slice_first[slice]; to.leaf < part->slice_first[slice + 1]; to.leaf++) {
+    struct sample_progress *at = &part->progress[slice];
+    struct leaf_samples to = {comparison, side, &part->sums[slice], at,
+                              clock_now_us() + comparison->setup.task_us};
+    if (!at->is_begun)
+        begin_samples(part, slice);
+    for (; at->leaf < part->slice_first[slice + 1]; at->leaf++) {
         if (comparison->base.cancelled)
             return;
-        sample_leaf(&to);
+        if (!sample_leaf(&to)) {
+            comparison->base.repeats = true;
+            return;
+        }
     }
+    at->is_done = true;
 }
 
 void comparison_choose_worst(struct comparison *comparison, enum comparison_side side)

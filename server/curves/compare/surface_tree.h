@@ -9,10 +9,9 @@
 #ifndef SHEEN_CURVES_COMPARE_SURFACE_TREE_H
 #define SHEEN_CURVES_COMPARE_SURFACE_TREE_H
 
-#include <stdatomic.h>
-
 #include "server/curves/compare/kept_surface.h"
 #include "server/curves/compare/sector.h"
+#include "server/curves/computation.h"
 
 /* An axis-parallel box: least x, y, z, and largest x, y, z. */
 struct tree_box {
@@ -35,7 +34,7 @@ enum { TREE_CUTS = 4 };
 
 struct surface_tree {
     const struct kept_surface *surface; /* outlives the tree */
-    const atomic_bool *cancelled;       /* searches end early once it is true; NULL: never */
+    struct computation *computation;    /* searches end early once it is cancelled; NULL: never */
     /* [n_leaves]: pieces of each leaf if a part has at most 4^n of them. */
     uint32_t (*n_pieces_of)[TREE_CUTS];
     uint32_t *first_piece;         /* [n_leaves] */

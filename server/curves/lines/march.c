@@ -228,8 +228,8 @@ static void refine(struct over *over, struct traced_point a, const double from[2
     bool is_straight = sagitta(&a, &b) <= tolerance;
     struct tracer *tracer = over->march->tracer;
     over->is_cut |= tracer->n_work > TRACE_MOST_WORK;
-    if (over->failed || over->is_cut || *tracer->work.cancelled || depth == MOST_HALVINGS ||
-        (depth > 0 && is_straight)) {
+    if (over->failed || over->is_cut || computation_is_cancelled(tracer->work.computation) ||
+        depth == MOST_HALVINGS || (depth > 0 && is_straight)) {
         put(over, &b, to);
         return;
     }

@@ -147,7 +147,8 @@ void sides_find_patch(struct sides_work *work, const struct limit_patch *patch, 
         struct crossings along;
         patch_field_init(&on, &set->field[f], &bezier);
         crossings_init(&along, &on, &segment);
-        for (uint32_t i = set->first_line[f]; i < set->first_line[f + 1] && !*work->cancelled; i++)
+        for (uint32_t i = set->first_line[f];
+             i < set->first_line[f + 1] && !computation_is_cancelled(work->computation); i++)
             find_line(work, i, &along, &on, fmin(from, to), fmax(from, to), signs, list);
     }
 }

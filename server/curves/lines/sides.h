@@ -3,8 +3,7 @@
 #ifndef SHEEN_LINES_SIDES_H
 #define SHEEN_LINES_SIDES_H
 
-#include <stdatomic.h>
-
+#include "server/curves/computation.h"
 #include "server/curves/fields/line_set.h"
 #include "server/surface/tables.h"
 
@@ -25,10 +24,10 @@ struct root_list {
 struct sides_work {
     const struct limit_tables *tables;
     const struct line_set *set;
-    const uint8_t *levels;        /* of each node: how many levels of a CORNER are traced */
-    uint64_t next_node;           /* the number of the next crossing */
-    bool failed;                  /* memory was short */
-    const atomic_bool *cancelled; /* once it is true, roots may be missing: nobody wants them */
+    const uint8_t *levels;           /* of each node: how many levels of a CORNER are traced */
+    uint64_t next_node;              /* the number of the next crossing */
+    bool failed;                     /* memory was short */
+    struct computation *computation; /* once it is cancelled, roots may be missing */
 };
 
 /* Appends a root; sets work->failed when memory is short. */

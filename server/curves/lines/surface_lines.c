@@ -112,12 +112,12 @@ static bool begin_borders(struct surface_lines *lines, size_t *n_slices, struct 
     return lines->parts && lines->first ? true : out_of_memory(lines, error);
 }
 
-static struct sides_work work_of(const struct surface_lines *lines)
+static struct sides_work work_of(struct surface_lines *lines)
 {
     return (struct sides_work){.tables = lines->tables,
                                .set = lines->set,
                                .levels = lines->levels,
-                               .cancelled = &lines->base.cancelled};
+                               .computation = &lines->base};
 }
 
 static void slice_borders(struct surface_lines *lines, struct part *part, struct sides_work *work,

@@ -409,7 +409,7 @@ static bool may_split(struct cells *cells)
 static void trace_cell(struct cells *cells, const struct cell *cell)
 {
     struct tracer *tracer = cells->march.tracer;
-    if (*tracer->work.cancelled)
+    if (computation_is_cancelled(tracer->work.computation))
         return;
     const struct field_line *line = &tracer->work.set->line[cells->march.line];
     int roots = n_roots(cell);
@@ -514,7 +514,7 @@ void trace_patch(struct tracer *tracer, const struct limit_patch *patch,
         cells.field = (int)f;
         find_terms(&cells, whole);
         for (uint32_t i = set->first_line[f]; i < set->first_line[f + 1]; i++) {
-            if (*tracer->work.cancelled || tracer->work.failed)
+            if (computation_is_cancelled(tracer->work.computation) || tracer->work.failed)
                 break;
             if (field_quick_sign(&whole->terms, &set->line[i]) && !has_roots(region, i))
                 continue;
