@@ -35,6 +35,7 @@ LIBDIR ?= $(PREFIX)/lib
 PYTHONDIR ?= $(PREFIX)/lib/$(if $(filter /usr,$(PREFIX)),python3,$(shell /usr/bin/python3 -c 'import sys; print("python%d.%d" % sys.version_info[:2])'))/dist-packages
 CC ?= gcc
 CXX ?= g++
+.DEFAULT_GOAL := all
 SANITIZE ?=
 FUZZ ?=
 COVERAGE ?=

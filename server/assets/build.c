@@ -23,9 +23,9 @@ static bool name_other_device(const struct build_order *order, struct error *err
 }
 
 bool build_may_need_model(const struct build_order *order, const struct limit_tables *tables,
-                          struct error *error)
+                          size_t plan_bytes, struct error *error)
 {
-    return order->may_need(order->owner, build_model_bytes(order, tables), error) ||
+    return order->may_need(order->owner, build_model_bytes(order, tables) + plan_bytes, error) ||
            name_other_device(order, error);
 }
 

@@ -51,7 +51,7 @@ static bool may_need(void *owner, const struct limit_size *size, struct error *e
                                   .n_texels = size->n_texels,
                                   .n_bounds = size->n_bounds};
     memcpy(tables.count, size->count, sizeof tables.count);
-    return build_may_need_model(clock->order, &tables, error);
+    return build_may_need_model(clock->order, &tables, size->plan_bytes, error);
 }
 
 struct limit_watch build_clock_watch(struct build_clock *clock)

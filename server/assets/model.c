@@ -247,8 +247,8 @@ static bool read_cage(struct model_build *build)
     build_clock_start(&clock, order, &build->cpu_us);
     const struct limit_watch watch = build_clock_watch(&clock);
     if (check_not_cancelled(order, &error) &&
-        cage_statistics(&build->cage, &model->statistics, &error) &&
-        surface_plan_init(&build->plan, &build->cage, &watch, &error) && init_tables(build, &error))
+        surface_plan_init(&build->plan, &build->cage, &watch, &error) &&
+        cage_statistics(&build->cage, &model->statistics, &error) && init_tables(build, &error))
         return true;
     return fail_named(build, &error);
 }

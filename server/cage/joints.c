@@ -175,6 +175,13 @@ bool cage_joints_find(struct cage_joints *joints, const struct cage *cage)
     return ok;
 }
 
+size_t cage_joints_bytes(size_t n_patches)
+{
+    const struct cage_joints *joints;
+    return n_patches * (4 * (sizeof(struct edge) + sizeof(struct found)) + sizeof *joints->across +
+                        sizeof *joints->collapsed);
+}
+
 void cage_joints_finish(struct cage_joints *joints)
 {
     free(joints->across);

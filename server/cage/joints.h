@@ -33,6 +33,9 @@ struct cage_joints {
  * memory is short; nothing is to be finished then. */
 bool cage_joints_find(struct cage_joints *joints, const struct cage *cage);
 void cage_joints_finish(struct cage_joints *joints);
+/* The main memory, in bytes, that cage_joints_find() takes for so many patches; the result is part
+ * of it. */
+size_t cage_joints_bytes(size_t n_patches);
 
 /* The Bezier points of edge e, in its direction, of a patch's 16. */
 void cage_patch_edge(double bezier[16][3], unsigned e, double out[4][3]);

@@ -40,6 +40,9 @@ struct limit_size {
     double hull_min[3], hull_max[3]; /* box of the control points, which contains the surface */
     struct limit_source *source;     /* owned by the plan */
     bool has_bends;                  /* the tables need `bends` */
+    /* Main memory that the plan takes while it is made, with the model from which it is made, in
+     * bytes: only for limit_may_need(); 0: little beside the tables. */
+    size_t plan_bytes;
 };
 
 /* A node as a whole: for a CORNER its frame, a quaternion x y z w that turns frame coordinates into

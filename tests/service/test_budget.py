@@ -52,6 +52,14 @@ def mixed_load(daemon, seed, ends, done):
     done.append(None)
 
 
+def folded_sheet(side):
+    """side x side patches in OBJ's free form, between four points."""
+    rows = [" ".join(str(1 + i % 2 + 2 * (j % 2)) for i in range(side + 3)) for j in range(side + 3)]
+    knots = " ".join(str(k) for k in range(-3, side + 4))
+    return (f"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0.3\ncstype bspline\ndeg 3 3\nsurf 0 {side} 0 {side} " +
+            " \\\n".join(rows) + f"\nparm u {knots}\nparm v {knots}\nend\n").encode()
+
+
 class Resident(unittest.TestCase):
     def test_views_that_are_dropped_change_no_byte(self):
         """Three clients' frames have no room beside each other, so that what each is drawn on goes between its tiles."""
@@ -99,6 +107,22 @@ class Resident(unittest.TestCase):
                 peak_kb = int(re.search(r"VmHWM:\s*(\d+)", status.read()).group(1))
             self.assertLess(0 if SANITIZED else peak_kb, most_kb)
             self.assertLess(client.stats()[62][0], 1 << 20)  # nothing stays reserved for the work
+        self.assertEqual(daemon.stop(), 0)
+
+    def test_patches_are_refused_before_they_are_joined(self):
+        """A file of 2 bytes a patch, each of which takes more than a kilobyte until its tables are made."""
+        daemon = Daemon("--memory-budget", budget(64), tcp=False)
+        with Client(daemon.unix) as client:
+            for side, taken in (100, True), (300, False):
+                model = client.upload(folded_sheet(side), "sheet.obj")
+                if taken:
+                    client.render(model)
+                    continue
+                with self.assertRaises(wire.Refused) as caught:
+                    client.render(model)
+                need = int(re.search(r"needs at least (\d+) bytes", caught.exception.text).group(1))
+                self.assertGreater(need, 1000 * side * side)
+            client.render(client.upload(CUBE, "cube.obj"))
         self.assertEqual(daemon.stop(), 0)
 
     @unittest.skipIf(SANITIZED, "sanitizers hoard memory")

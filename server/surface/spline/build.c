@@ -146,7 +146,10 @@ struct spline_plan *spline_plan_create(const struct cage *cage, const struct lim
     struct limit_size size = {.n_faces = cage->n_patches,
                               .n_nodes = cage->n_patches,
                               .n_texels = cage->n_patches * LIMIT_PATCH_TEXELS,
-                              .count = {[LIMIT_REGULAR] = cage->n_patches}};
+                              .count = {[LIMIT_REGULAR] = cage->n_patches},
+                              .plan_bytes = cage->n_patches *
+                                                (sizeof *cage->patch + sizeof(struct spline_face)) +
+                                            cage_joints_bytes(cage->n_patches)};
     struct cage_joints joints = {0};
     struct spline_plan *plan = NULL;
     if (!limit_may_need(watch, &size, error))
