@@ -11,7 +11,7 @@ at_once=$(($(nproc) + 1))
 # These rows start first, so that none of them is left to run alone at the end.
 long_rows="frames_shapes test_native_frames service_limits service_faults oracle_self filter lines areas \
 service_access sheen_bench test_gpu_sources"
-turn=long
+turn=long checked=
 shapes=../shared/shapes
 # In builds with sanitizers, leaks and races of other libraries are not reported.
 export LSAN_OPTIONS="suppressions=tests/lsan.supp:print_suppressions=0"
@@ -115,6 +115,8 @@ shapes_of() { # pattern
 }
 
 unit() {
+    # SIGBUS reaches test_threads_worker's programs, and AddressSanitizer would report it as a fault.
+    local -x ASAN_OPTIONS=handle_sigbus=0
     # Mesa compiles without LLVM's optimisations: unit tests draw many kinds of small frames, for which compiling takes
     # longer than drawing. test_native_frames takes half of the processor time (empty cache). The oracles' rows on
     # Mesa draw more, and keep the optimisations.
@@ -148,7 +150,8 @@ bench() {
 
 # Tests of the service, whose files grep finds by ALONE with option $1 (-L: without, -l: with); $2 runs each.
 service_by() { # option, how
-    for module in $(grep "$1" '^ALONE' tests/service/test_*.py); do
+    # A sanitizer's runtime must be loaded before any library, also before the one that test_libraries preloads.
+    for module in $(grep "$1" '^ALONE' ${checked:+--exclude=test_libraries.py} tests/service/test_*.py); do
         name=$(basename "$module" .py)
         "$2" "service_${name#test_}" env -u SHEEN_TEST_DEVICE /usr/bin/python3 tests/service/run.py "$build" "$name"
     done
@@ -243,6 +246,7 @@ all)
     service_alone
     ;;
 checked)
+    checked=yes
     in_parallel oracle_of_code service unit fuzz
     service_alone
     ;;

@@ -111,6 +111,7 @@ static void test_cut_in_place(void **state)
         while (step(renderer, model, &work, &frame) == FRAME_MORE)
             is_done = is_done || step(renderer, model, &between, &other_frame) == FRAME_DONE;
         assert_same_frames(&whole, &frame);
+        frame_work_finish(&between);
         frame_finish(&frame);
         frame_finish(&other_frame);
         renderer_model_destroy(renderer, model);
@@ -244,8 +245,10 @@ static void sequence_init(struct sequence *s)
 
 static void give_up(struct sequence *s, int k)
 {
-    if (s->drawn[k] >= 0)
+    if (s->drawn[k] >= 0) {
+        frame_work_finish(&s->work[k]);
         frame_finish(&s->frame[k]);
+    }
     s->drawn[k] = -1;
 }
 
