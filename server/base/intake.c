@@ -51,9 +51,40 @@ static bool can_always(const struct turn *turn, void *context)
     return true;
 }
 
-struct intake_source *intake_next(struct intake *intake)
+static uint64_t due_us(const struct intake_party *party)
 {
-    struct turn *turn = turns_next(&intake->parties, can_always, NULL);
+    return party->postponed_us < INTAKE_AHEAD_US ? 0 : party->postponed_us - INTAKE_AHEAD_US;
+}
+
+static bool is_due(const struct turn *turn, void *now_us)
+{
+    return due_us(turn->of) <= *(const uint64_t *)now_us;
+}
+
+void intake_postpone(struct intake_party *party, uint64_t now_us, uint64_t us)
+{
+    party->postponed_us = (party->postponed_us > now_us ? party->postponed_us : now_us) + us;
+}
+
+bool intake_is_postponed(const struct intake_source *source, uint64_t now_us)
+{
+    return due_us(source->party) > now_us;
+}
+
+uint64_t intake_due_us(const struct intake *intake)
+{
+    const struct turn *turn = intake->parties.first;
+    uint64_t first_us = UINT64_MAX;
+    for (const struct turn *end = turn; turn; turn = turn->next == end ? NULL : turn->next) {
+        uint64_t us = due_us(turn->of);
+        first_us = us < first_us ? us : first_us;
+    }
+    return first_us;
+}
+
+struct intake_source *intake_next(struct intake *intake, uint64_t now_us)
+{
+    struct turn *turn = turns_next(&intake->parties, is_due, &now_us);
     if (!turn)
         return NULL;
     struct intake_party *party = turn->of;

@@ -265,6 +265,10 @@ void request_query(struct request_client *client, struct reply *reply, uint32_t 
     request_stop_awaiting(request);
 }
 
+/* A party may replace 2,000 requests a second, and 100 more at once: enough for a hand that moves with 1,000
+ * events a second in two windows. */
+enum { REPLACED_US = 500 };
+
 /* Puts the frame into the scheduler's queue. From here on a newer request of its view replaces
  * it. */
 static void enter_queue(struct request *request)
@@ -277,8 +281,10 @@ static void enter_queue(struct request *request)
     entry->view = render->view;
     struct schedule_entry *replaced =
         scheduler_enter(&request->host->scheduler, &request->client->queue, entry);
-    if (replaced)
+    if (replaced) {
         request_reply_superseded(replaced->owner, request->seq);
+        intake_postpone(&request->party->intake, clock_now_us(), REPLACED_US);
+    }
 }
 
 /* True if the frame's file is written by the worker program for images. */

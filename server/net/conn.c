@@ -53,7 +53,8 @@ static const struct conn_transport PLAIN = {plain_read, plain_write, plain_pendi
 
 static void update_events(struct conn *conn)
 {
-    bool reads = !conn->peer_ended && (conn->state != CONN_OPEN || !conn->held);
+    bool waits = conn->held || conn->postponed;
+    bool reads = !conn->peer_ended && (conn->state != CONN_OPEN || !waits);
     bool writes = !STAILQ_EMPTY(&conn->unsent) || conn->read_wants_write;
     uint32_t events = (reads ? EPOLLIN : 0u) | (writes ? EPOLLOUT : 0u);
     if (events != conn->events)
@@ -365,6 +366,7 @@ static void handle_turn(struct intake_source *source)
 {
     struct conn *conn = source->owner;
     bool delivered = false;
+    conn->postponed = false;
     if (conn->state != CONN_OPEN)
         read_more(conn);
     else if (!conn->held)
@@ -373,13 +375,18 @@ static void handle_turn(struct intake_source *source)
     bool more = (delivered && conn->in_used >= MESSAGE_HEADER_BYTES) ||
                 (conn->state == CONN_OPEN && conn->transport->pending(conn));
     ask_for_turn(conn, conn->state == CONN_OPEN && !conn->held && more);
+    update_events(conn);
 }
 
 static void conn_ready(struct loop_source *source, uint32_t events)
 {
     struct conn *conn = source->owner;
-    if (events & EPOLLIN || (events & EPOLLOUT && conn->read_wants_write))
+    if (events & EPOLLIN || (events & EPOLLOUT && conn->read_wants_write)) {
         ask_for_turn(conn, true);
+        /* Without this the loop would wake up for the unread input again and again. */
+        conn->postponed = intake_is_postponed(&conn->intake, clock_now_us());
+        update_events(conn);
+    }
     if (conn->state != CONN_CLOSED && (events & EPOLLOUT))
         conn_flush(conn);
     /* Both directions are closed. All input has been read, unless it was held. */

@@ -81,6 +81,7 @@ struct conn {
     size_t in_at, in_used, in_capacity; /* where unhandled input begins, and its length */
     size_t skipped;  /* bytes still to come of a message without room, which are thrown away */
     bool held;       /* delivers no message and reads nothing */
+    bool postponed;  /* reads nothing until its turn in the intake comes */
     bool peer_ended; /* the peer will send no more */
 
     STAILQ_HEAD(conn_blocks, conn_block) unsent;

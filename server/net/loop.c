@@ -94,7 +94,7 @@ void loop_set_ticking(struct loop *loop, bool on)
 
 bool loop_had_input(const struct loop *loop)
 {
-    return loop->had_input || !intake_is_empty(&loop->intake);
+    return loop->had_input || intake_due_us(&loop->intake) != UINT64_MAX;
 }
 
 void loop_hurry(struct loop *loop)
@@ -104,21 +104,24 @@ void loop_hurry(struct loop *loop)
 
 static int wait_ms(const struct loop *loop)
 {
-    if (loop->hurries || !intake_is_empty(&loop->intake))
+    uint64_t due_us = intake_due_us(&loop->intake);
+    if (loop->ticking && loop->next_tick_us < due_us)
+        due_us = loop->next_tick_us;
+    if (loop->hurries || due_us == 0)
         return 0;
-    if (!loop->ticking)
+    if (due_us == UINT64_MAX)
         return -1;
-    uint64_t now = clock_now_us();
-    return loop->next_tick_us <= now ? 0 : (int)((loop->next_tick_us - now + 999) / 1000);
+    uint64_t now_us = clock_now_us();
+    return due_us <= now_us ? 0 : (int)((due_us - now_us + 999) / 1000);
 }
 
 static void handle_input(struct intake *intake)
 {
-    if (intake_is_empty(intake))
+    if (intake_due_us(intake) == UINT64_MAX)
         return;
     uint64_t begin_us = clock_now_us(), now_us = begin_us;
     struct intake_source *source;
-    while (now_us - begin_us < INTAKE_BATCH_US && (source = intake_next(intake))) {
+    while (now_us - begin_us < INTAKE_BATCH_US && (source = intake_next(intake, now_us))) {
         uint64_t before_us = now_us;
         source->handle(source);
         now_us = clock_now_us();
@@ -137,7 +140,7 @@ void loop_run(struct loop *loop)
         }
         loop->n_events = 0;
         loop->hurries = false;
-        loop->had_input = !intake_is_empty(&loop->intake);
+        loop->had_input = intake_due_us(&loop->intake) != UINT64_MAX;
         handle_input(&loop->intake);
         if (loop->ticking && clock_now_us() >= loop->next_tick_us) {
             loop->next_tick_us = clock_now_us() + LOOP_TICK_US;

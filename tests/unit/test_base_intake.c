@@ -26,7 +26,7 @@ static void handle(struct intake_source *source)
 static void handle_for(struct intake *intake, uint64_t us)
 {
     for (uint64_t now_us = 0; now_us < us;) {
-        struct intake_source *source = intake_next(intake);
+        struct intake_source *source = intake_next(intake, 0);
         const struct asker *asker = source->owner;
         source->handle(source);
         intake_charge(source, asker->cost_us);
@@ -48,16 +48,16 @@ static void test_empty(void **state)
     struct intake intake = {0};
     struct intake_party party;
     struct asker asker;
-    assert_null(intake_next(&intake));
+    assert_null(intake_next(&intake, 0));
     intake_add_party(&party);
     ask(&intake, &asker, &party, 1);
     /* the source has been marked as having input already */
     intake_ask(&intake, &asker.source, true);
-    assert_ptr_equal(intake_next(&intake), &asker.source);
+    assert_ptr_equal(intake_next(&intake, 0), &asker.source);
     intake_ask(&intake, &asker.source, false);
     intake_ask(&intake, &asker.source, false);
-    assert_true(intake_is_empty(&intake));
-    assert_null(intake_next(&intake));
+    assert_int_equal(intake_due_us(&intake), UINT64_MAX);
+    assert_null(intake_next(&intake, 0));
 }
 
 /* Parties of 1 to 40 sources, whose messages cost from 1 to 400 us. */
@@ -133,18 +133,54 @@ static void test_moves(void **state)
     assert_null(strangers.sources.first);
     intake_move(&intake, &a.source, &known);
     /* source a moved without any request pending */
-    assert_ptr_equal(intake_next(&intake), &b.source);
+    assert_ptr_equal(intake_next(&intake, 0), &b.source);
     intake_ask(&intake, &b.source, false);
-    assert_true(intake_is_empty(&intake));
+    assert_int_equal(intake_due_us(&intake), UINT64_MAX);
+}
+
+/* Every message of a party postpones it by 250 us: it has 200 handled at once and then 4,000 a second, and
+ * those of another party do not wait. */
+static void test_postponed(void **state)
+{
+    (void)state;
+    enum { SECOND_US = 1000000, EACH_US = 250, STEP_US = 10 };
+    struct asker many, other;
+    struct intake_party greedy, party;
+    struct intake intake = {0};
+    intake_add_party(&greedy);
+    intake_add_party(&party);
+    ask(&intake, &many, &greedy, 1);
+    ask(&intake, &other, &party, 1);
+    unsigned at_once = 0;
+    const uint64_t start_us = 77 * (uint64_t)SECOND_US;
+    for (uint64_t now_us = start_us; now_us < start_us + SECOND_US; now_us += STEP_US) {
+        const struct intake_source *next = intake_next(&intake, now_us);
+        assert_non_null(next);
+        intake_charge(next->owner == &many ? &many.source : &other.source, 1);
+        if (next->owner != &many)
+            continue;
+        many.used_us++;
+        intake_postpone(&greedy, now_us, EACH_US);
+        at_once += now_us < start_us + INTAKE_AHEAD_US / 10;
+    }
+    assert_in_range(many.used_us, SECOND_US / EACH_US + 195, SECOND_US / EACH_US + 205);
+    assert_in_range(at_once, 195, 230);
+
+    uint64_t end_us = start_us + SECOND_US;
+    intake_ask(&intake, &other.source, false);
+    intake_postpone(&greedy, end_us, INTAKE_AHEAD_US);
+    uint64_t due_us = intake_due_us(&intake);
+    assert_true(due_us > end_us);
+    assert_null(intake_next(&intake, due_us - 1));
+    assert_ptr_equal(intake_next(&intake, due_us), &many.source);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_empty),
-        cmocka_unit_test(test_shares),
-        cmocka_unit_test(test_rare_ones),
-        cmocka_unit_test(test_moves),
+        cmocka_unit_test(test_empty),     cmocka_unit_test(test_shares),
+        cmocka_unit_test(test_rare_ones), cmocka_unit_test(test_moves),
+        cmocka_unit_test(test_postponed),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
