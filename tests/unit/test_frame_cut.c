@@ -56,7 +56,7 @@ static void test_no_interactive_tile_takes_long(void **state)
                                                (sheen_PatternKind)pattern, interactive);
                 struct cut native = cut_frame(&render, &NATIVE), mesa = cut_frame(&render, &MESA);
                 assert_true(native.in_place && mesa.in_place);
-                assert_true(tile_ms(&render, native, 1) < 15);
+                assert_true(tile_ms(&render, native, 1) < 8);
                 assert_true(tile_ms(&render, mesa, 2.4) < 15 || mesa.tile_px < 128 * 128);
                 assert_int_equal(cut_frame(&render, &GPU).tile_px, 0);
             }
