@@ -11,6 +11,7 @@
 
 #include <cmocka.h>
 
+#include "server/render/native/clip/clip.h"
 #include "tests/unit/native_tile.h"
 
 static void test_threads(void **state)
@@ -128,6 +129,48 @@ static void test_sets(void **state)
     planes_finish(&other);
 }
 
+static double random_of(double low, double high)
+{
+    return low + (high - low) * rand() / RAND_MAX;
+}
+
+/* What is passed over could not have left anything: triangles with corners near the excluded points leave no part.
+ * And most of what lies far aside is excluded. */
+static void test_excludes(void **state)
+{
+    (void)state;
+    unsigned n_excluded = 0, n_left = 0;
+    srand(20261201);
+    for (int n = 0; n < 20000; n++) {
+        const struct view view = {.perspective = n & 1,
+                                  .units_per_px = exp(random_of(-20, 2)),
+                                  .centre_px = {random_of(-50, 700), random_of(-50, 500)},
+                                  .near = exp(random_of(-8, 2)),
+                                  .far = 1e4,
+                                  .width_px = 640,
+                                  .height_px = 480};
+        const double side = view.units_per_px * 1000 * exp(random_of(-3, 3)), off = side / 4;
+        const double middle[3] = {random_of(-4, 4) * side, random_of(-4, 4) * side,
+                                  random_of(-1, 20)};
+        struct native_clip clip;
+        struct native_corner point[4] = {{{0}, 0, 0}}, left[CLIP_MOST_CORNERS];
+        native_clip_init(&clip, &view);
+        for (int i = 0; i < 4; i++)
+            for (int k = 0; k < 3; k++)
+                point[i].at[k] = middle[k] + random_of(-side, side);
+        bool is_excluded = native_clip_excludes(&clip, point, 4, off);
+        n_excluded += is_excluded;
+        for (int i = 0; i < 3; i++)
+            for (int k = 0; k < 3; k++)
+                point[i].at[k] += random_of(-off, off) / sqrt(3);
+        int n_corners = native_clip_triangle(&clip, point, left);
+        n_left += n_corners > 0;
+        assert_false(is_excluded && n_corners > 0);
+    }
+    assert_in_range(n_excluded, 2000, 18000);
+    assert_in_range(n_left, 1000, 18000);
+}
+
 static void test_refuses(void **state)
 {
     (void)state;
@@ -142,6 +185,7 @@ static void test_refuses(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_threads), cmocka_unit_test(test_tiles),
-                                       cmocka_unit_test(test_sets), cmocka_unit_test(test_refuses)};
+                                       cmocka_unit_test(test_sets), cmocka_unit_test(test_excludes),
+                                       cmocka_unit_test(test_refuses)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -186,10 +186,12 @@ struct native_borders {
 void native_borders_of(const struct limit_node *node, struct native_borders *borders);
 
 /* Adds the triangles of a piece's cells, clipped to what can be drawn, to those of the thread.
- * Returns their number, or -1 when memory is short; adds the vertices to frame->n_vertices, and
- * nothing else if that is too many. Sets `box`, the pixels whose centres they may cover, and the
- * largest nearness. */
+ * Returns their number, or -1 when memory is short; adds the vertices that it computes to
+ * frame->n_vertices, and nothing else if that is too many. With the patch of a PIECE_OF_PATCH, cells
+ * far outside the picture are not computed (NULL: all are). Sets `box`, the pixels whose centres the
+ * triangles may cover, and the largest nearness. */
 int native_cut_piece(struct native_frame *frame, struct native_thread *thread,
-                     const struct native_piece *piece, uint32_t grid, int box[4], float *nearest);
+                     const struct native_piece *piece, const struct native_patch *patch,
+                     uint32_t grid, int box[4], float *nearest);
 
 #endif

@@ -62,12 +62,15 @@ static void lay_out_lists(struct native_target *t, struct layout *layout)
     }
 }
 
-/* Memory of which less than half is used is freed first, unless it is small: tiles at the right and lower border are
- * smaller than the others, and the next frame needs the whole again. */
+/* Memory of which less than half is used IDLE_USES times in a row is freed, unless it is small: tiles at the right and
+ * lower border are smaller than the others, and frames of other sizes come in between. The kernel clears what is
+ * allocated again, which takes longer than a tile. */
 static bool reserve(struct native_words *words, size_t n)
 {
-    enum { ALIGN = 64, SMALL_WORDS = 8 << 20 };
-    if (n <= words->n && (words->n / 2 <= n || (words->n <= SMALL_WORDS && n > 0)))
+    enum { ALIGN = 64, SMALL_WORDS = 8 << 20, IDLE_USES = 256 };
+    bool is_used = words->n / 2 <= n || (words->n <= SMALL_WORDS && n > 0);
+    words->idle_uses = is_used ? 0 : words->idle_uses + 1;
+    if (n <= words->n && words->idle_uses < IDLE_USES)
         return true;
     free(words->words);
     *words = (struct native_words){0};

@@ -37,6 +37,7 @@ struct native_target {
     struct native_words {
         uint32_t *words;
         size_t n;
+        unsigned idle_uses; /* number of the latest uses that needed less than half */
     } own, of_lights, of_measures;
     uint32_t *hits; /* hits of the rays of rounded pixels */
     size_t n_hit_words;

@@ -1,5 +1,6 @@
 #include "server/render/native/clip/clip.h"
 
+#include <math.h>
 #include <string.h>
 
 /* Triangles are cut off this far outside the picture. */
@@ -28,6 +29,26 @@ void native_clip_init(struct native_clip *clip, const struct view *view)
         first->normal[k] = 1;
         second->normal[k] = -1;
     }
+}
+
+static bool is_beyond(const struct native_clip_plane *plane, const struct native_corner *points,
+                      int n, double off)
+{
+    const double *to = plane->normal;
+    double least = -off * sqrt(to[0] * to[0] + to[1] * to[1] + to[2] * to[2]);
+    for (int i = 0; i < n; i++)
+        if (!(above(plane, &points[i]) < least))
+            return false;
+    return true;
+}
+
+bool native_clip_excludes(const struct native_clip *clip, const struct native_corner *points, int n,
+                          double off)
+{
+    for (int p = 0; p < CLIP_PLANES; p++)
+        if (is_beyond(&clip->plane[p], points, n, off))
+            return true;
+    return false;
 }
 
 static struct native_corner between(const struct native_corner *a, const struct native_corner *b,

@@ -20,6 +20,9 @@ struct native_clip {
 };
 
 void native_clip_init(struct native_clip *clip, const struct view *view);
+/* True if all that is at most `off` away from the hull of n points lies on the outer side of one plane. */
+bool native_clip_excludes(const struct native_clip *clip, const struct native_corner *points, int n,
+                          double off);
 /* Clips a triangle to a convex polygon. Returns the number of its corners: 0, or 3 and more. */
 int native_clip_triangle(const struct native_clip *clip, const struct native_corner triangle[3],
                          struct native_corner left[CLIP_MOST_CORNERS]);

@@ -35,13 +35,29 @@ static void widen(const struct native_triangle *t, int box[4], float *nearest)
     }
 }
 
+/* Number of cells along the sides of a block: the cells of a block are computed only if it may be in the picture. */
+enum { BLOCK = 8 };
+
+/* A piece that is being cut. */
+struct cutting {
+    struct native_frame *frame;
+    struct native_thread *thread;
+    const struct native_piece *piece;
+    int across, down; /* cells of its grid */
+    struct native_clip clip;
+    struct limit_patch patch; /* of the latest vertex, so that its points need not be made again */
+    /* How far the surface may lie from the bilinear interpolation of a block's corners, units; INFINITY: not known. */
+    double off;
+    int *box;
+    float *nearest;
+};
+
 /* Adds what remains of a triangle. Returns the number of triangles; -1: no memory. */
-static int add_triangle(const struct native_frame *frame, struct native_thread *thread,
-                        const struct native_clip *clip, const struct native_corner corners[3],
-                        int box[4], float *nearest)
+static int add_triangle(const struct cutting *of, const struct native_corner corners[3])
 {
+    struct native_thread *thread = of->thread;
     struct native_corner left[CLIP_MOST_CORNERS];
-    int n = native_clip_triangle(clip, corners, left);
+    int n = native_clip_triangle(&of->clip, corners, left);
     if (n == 0)
         return 0;
     if (!native_grow(&thread->triangle, &thread->triangle_capacity,
@@ -49,27 +65,77 @@ static int add_triangle(const struct native_frame *frame, struct native_thread *
         return -1;
     for (int k = 2; k < n; k++) {
         struct native_triangle *triangle = &thread->triangle[thread->n_triangles++];
-        set_corner(frame, &left[0], 0, triangle);
-        set_corner(frame, &left[k - 1], 1, triangle);
-        set_corner(frame, &left[k], 2, triangle);
-        widen(triangle, box, nearest);
+        set_corner(of->frame, &left[0], 0, triangle);
+        set_corner(of->frame, &left[k - 1], 1, triangle);
+        set_corner(of->frame, &left[k], 2, triangle);
+        widen(triangle, of->box, of->nearest);
     }
     return n - 2;
 }
 
-/* A point of the piece in camera space; s, t in [0,1]. */
-static struct native_corner corner_at(const struct native_frame *frame,
-                                      const struct native_piece *piece, double s, double t)
+/* Vertex (i,j) of the grid in camera space. */
+static struct native_corner vertex_at(struct cutting *of, int i, int j)
 {
-    const struct limit_tables *tables = frame->model->tables;
+    const struct limit_tables *tables = of->frame->model->tables;
+    const struct native_piece *piece = of->piece;
     struct limit_place place = {piece->node, tables->nodes[piece->node].rotation, 0, 0};
     struct limit_point point = {0};
-    struct native_corner corner = {.s = s, .t = t};
-    native_place(tables, piece, s, t, &place.a, &place.b);
-    limit_evaluate_at(tables, &place, &point);
+    struct native_corner corner = {.s = (double)i / of->across, .t = (double)j / of->down};
+    native_place(tables, piece, corner.s, corner.t, &place.a, &place.b);
+    if (limit_patch_find_again(tables, &place, &of->patch))
+        limit_patch_evaluate(tables, &of->patch, &point);
     const double world[3] = {point.s.x, point.s.y, point.s.z};
-    view_transform(frame->view, world, corner.at);
+    view_transform(of->frame->view, world, corner.at);
     return corner;
+}
+
+/* A vertex that is computed here, in double precision and with its patch searched for, takes as long as so many
+ * others. */
+enum { CUT_VERTEX_WEIGHT = 16 };
+
+/* Counts the vertices of a block, so that views that cut very many pieces are refused, as others with too many
+ * vertices are. False if they are too many. */
+static bool count_vertices(struct native_frame *frame, int across, int down)
+{
+    uint64_t n = (uint64_t)(across + 1) * (uint64_t)(down + 1) * CUT_VERTEX_WEIGHT;
+    if (__atomic_add_fetch(&frame->n_vertices, n, __ATOMIC_RELAXED) > GRIDS_MAX_VERTICES)
+        __atomic_store_n(&frame->too_many, true, __ATOMIC_RELAXED);
+    return !__atomic_load_n(&frame->too_many, __ATOMIC_RELAXED);
+}
+
+/* Cells from (i0,j0) to (i1,j1). Returns the number of triangles; -1: no memory. */
+static int cut_cells(struct cutting *of, int i0, int j0, int i1, int j1)
+{
+    struct native_corner row[2][BLOCK + 1];
+    int total = 0;
+    for (int j = j0; j <= j1; j++) {
+        struct native_corner *own = row[j & 1], *last = row[~j & 1];
+        for (int i = i0; i <= i1; i++)
+            own[i - i0] = vertex_at(of, i, j);
+        for (int k = 0; k < i1 - i0 && j > j0; k++) {
+            const struct native_corner halves[2][3] = {{last[k], last[k + 1], own[k]},
+                                                       {own[k], last[k + 1], own[k + 1]}};
+            for (int h = 0; h < 2; h++) {
+                int n = add_triangle(of, halves[h]);
+                if (n < 0)
+                    return -1;
+                total += n;
+            }
+        }
+    }
+    return total;
+}
+
+static int cut_block(struct cutting *of, int i0, int j0)
+{
+    int i1 = i0 + BLOCK < of->across ? i0 + BLOCK : of->across;
+    int j1 = j0 + BLOCK < of->down ? j0 + BLOCK : of->down;
+    const struct native_corner corners[4] = {vertex_at(of, i0, j0), vertex_at(of, i1, j0),
+                                             vertex_at(of, i0, j1), vertex_at(of, i1, j1)};
+    if (native_clip_excludes(&of->clip, corners, 4, of->off) ||
+        !count_vertices(of->frame, i1 - i0, j1 - j0))
+        return 0;
+    return cut_cells(of, i0, j0, i1, j1);
 }
 
 static void cut_to_picture(const struct view *view, int box[4])
@@ -81,47 +147,41 @@ static void cut_to_picture(const struct view *view, int box[4])
     box[3] = box[3] < height ? box[3] : height - 1;
 }
 
-/* A vertex that is computed here, in double precision and with its patch searched for, takes as long as so many
- * others. */
-enum { CUT_VERTEX_WEIGHT = 16 };
-
-/* Counts the vertices of a grid, so that views that cut very many pieces are refused, as others with too many vertices
- * are. False if they are too many. */
-static bool count_vertices(struct native_frame *frame, int across, int down)
+/* See cutting.off: second derivatives bound it. The patch has single precision. */
+static double off_of_block(const struct native_patch *patch, const struct native_piece *piece,
+                           int across, int down)
 {
-    uint64_t n = (uint64_t)(across + 1) * (uint64_t)(down + 1) * CUT_VERTEX_WEIGHT;
-    if (__atomic_add_fetch(&frame->n_vertices, n, __ATOMIC_RELAXED) > GRIDS_MAX_VERTICES)
-        __atomic_store_n(&frame->too_many, true, __ATOMIC_RELAXED);
-    return !__atomic_load_n(&frame->too_many, __ATOMIC_RELAXED);
+    const double up = 1.001;
+    if (!patch)
+        return INFINITY;
+    double side = (double)piece->size * fmin(1, (double)BLOCK / (across < down ? across : down));
+    return up * (double)patch->bend * (double)patch->scale * side * side / 8;
 }
 
 int native_cut_piece(struct native_frame *frame, struct native_thread *thread,
-                     const struct native_piece *piece, uint32_t grid, int box[4], float *nearest)
+                     const struct native_piece *piece, const struct native_patch *patch,
+                     uint32_t grid, int box[4], float *nearest)
 {
-    int across = grid_cells[grid / GRID_SIDES], down = grid_cells[grid % GRID_SIDES], total = 0;
-    if (!count_vertices(frame, across, down))
-        return 0;
-    struct native_corner row[2][65];
-    struct native_clip clip;
-    native_clip_init(&clip, frame->view);
+    struct cutting of = {.frame = frame,
+                         .thread = thread,
+                         .piece = piece,
+                         .across = grid_cells[grid / GRID_SIDES],
+                         .down = grid_cells[grid % GRID_SIDES],
+                         .box = box,
+                         .nearest = nearest};
+    int total = 0;
+    of.off = off_of_block(patch, piece, of.across, of.down);
+    native_clip_init(&of.clip, frame->view);
     box[0] = box[1] = UINT16_MAX;
     box[2] = box[3] = -1;
     *nearest = 0;
-    for (int j = 0; j <= down; j++) {
-        struct native_corner *own = row[j & 1], *last = row[~j & 1];
-        for (int i = 0; i <= across; i++)
-            own[i] = corner_at(frame, piece, (double)i / across, (double)j / down);
-        for (int i = 0; i < across && j > 0; i++) {
-            const struct native_corner halves[2][3] = {{last[i], last[i + 1], own[i]},
-                                                       {own[i], last[i + 1], own[i + 1]}};
-            for (int k = 0; k < 2; k++) {
-                int n = add_triangle(frame, thread, &clip, halves[k], box, nearest);
-                if (n < 0)
-                    return -1;
-                total += n;
-            }
+    for (int j = 0; j < of.down; j += BLOCK)
+        for (int i = 0; i < of.across; i += BLOCK) {
+            int n = cut_block(&of, i, j);
+            if (n < 0)
+                return -1;
+            total += n;
         }
-    }
     cut_to_picture(frame->view, box);
     return box[0] <= box[2] && box[1] <= box[3] ? total : 0;
 }

@@ -206,7 +206,7 @@ static int draw_piece(struct native_frame *frame, struct native_thread *thread,
     } else {
         *quad =
             (struct native_quad){.grid = QUAD_TRIANGLES, .first = (uint32_t)thread->n_triangles};
-        int n = native_cut_piece(frame, thread, piece, grid, box, nearest);
+        int n = native_cut_piece(frame, thread, piece, patch, grid, box, nearest);
         if (n <= 0 || !is_looked_at(&frame->around, box))
             return n < 0 ? n : 0;
         quad->n_triangles = (uint16_t)n;
