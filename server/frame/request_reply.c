@@ -90,6 +90,9 @@ static void hold(struct request *request, struct encoded *encoded)
 void request_send_held(struct request_client *client)
 {
     const struct schedule_entry *entry;
+    if (client->queue.n_held ==
+        0) /* nearly always, and this is asked of all clients after each event */
+        return;
     TAILQ_FOREACH (entry, &client->queue.entries, link) {
         struct request *request = entry->owner;
         if (entry->state != SCHEDULE_HELD)

@@ -98,6 +98,7 @@ void scheduler_leave(struct scheduler *scheduler, struct schedule_entry *entry)
     struct schedule_flow *flow = flow_of(entry);
     struct schedule_part *part = part_of(entry);
     TAILQ_REMOVE(&entry->queue->entries, entry, link);
+    entry->queue->n_held -= entry->state == SCHEDULE_HELD;
     if (--flow->n == 0) {
         turns_leave(&part->flows, &flow->turn);
         if (!part->flows.first)
@@ -131,6 +132,7 @@ struct schedule_entry *scheduler_hold(struct schedule_entry *entry)
 {
     struct schedule_entry *newer = find_replaced(entry->queue, entry);
     entry->state = SCHEDULE_HELD;
+    entry->queue->n_held++;
     return newer;
 }
 
@@ -252,13 +254,23 @@ static void book(struct scheduler *scheduler, enum request_class used_by, int64_
     }
 }
 
-/* The class, stills or batches, that is owed most time and can draw; else N_CLASSES. */
+/* Can the class draw a tile for the time that it is owed? If it came earlier, its tile would interrupt every
+ * interactive frame of several tiles. */
+static bool is_owed_tile(const struct scheduler *scheduler, enum request_class request_class)
+{
+    int64_t owed = scheduler->classes[request_class].owed_us;
+    return owed > 0 && can_draw(scheduler, request_class) &&
+           (owed >= SCHEDULER_OWED_US ||
+            owed >= (int64_t)peek(scheduler, request_class)->estimate_us);
+}
+
+/* The class, stills or batches, that is owed most time, and a tile at least; else N_CLASSES. */
 static int owed_class(const struct scheduler *scheduler)
 {
     int most = N_CLASSES;
     for (int c = CLASS_STILL; c < N_CLASSES; c++) {
         int64_t owed = scheduler->classes[c].owed_us;
-        if (owed > 0 && can_draw(scheduler, (enum request_class)c) &&
+        if (is_owed_tile(scheduler, (enum request_class)c) &&
             (most == N_CLASSES || owed > scheduler->classes[most].owed_us))
             most = c;
     }

@@ -35,6 +35,8 @@ enum { N_CLASSES = 3 };
 #define SCHEDULER_SAVED_US 32000
 /* The share of the device's time that stills, and also batches, get while they wait. */
 #define SCHEDULER_SHARE_PERCENT 20
+/* A class of which less is owed waits until a whole tile is owed to it. */
+#define SCHEDULER_OWED_US 10000
 
 enum schedule_state {
     SCHEDULE_OUT,      /* in no queue */
@@ -75,6 +77,7 @@ struct schedule_flow {
 struct schedule_queue {                                   /* one per session */
     TAILQ_HEAD(schedule_entries, schedule_entry) entries; /* in order of entering */
     struct schedule_party *party;
+    unsigned n_held; /* entries in state HELD */
     struct schedule_flow flow[N_CLASSES];
 };
 

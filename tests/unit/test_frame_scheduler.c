@@ -113,6 +113,50 @@ static void test_long_tiles_do_not_queue_up(void **state)
     assert_int_equal(scheduler.ahead_us, 0);
 }
 
+/* While stills wait without an end, an interactive frame of four tiles is drawn without a break. A tile of a still comes
+ * when a whole one is owed. */
+static void test_tiles_of_a_frame_stay_together(void **state)
+{
+    (void)state;
+    enum { FRAMES = 50, TILES = 4, TILE_US = 3000, STILL_US = 8000 };
+    struct scheduler scheduler = {0};
+    struct schedule_queue stills, person;
+    static struct schedule_entry still[FRAMES * 4];
+    int n_stills = 0, n_within = 0;
+    add_queue(&stills);
+    add_queue(&person);
+    for (int frame = 0; frame < FRAMES; frame++) {
+        struct schedule_entry entry = entry_of(CLASS_INTERACTIVE, TILE_US);
+        for (int i = 0; i < 2; i++) { /* stills alone, and one more that waits */
+            still[n_stills] = entry_of(CLASS_STILL, STILL_US);
+            ask(&scheduler, &stills, &still[n_stills]);
+            if (i == 0) {
+                assert_ptr_equal(scheduler_next(&scheduler), &still[n_stills]);
+                draw_whole(&scheduler, &still[n_stills], STILL_US);
+            }
+            n_stills++;
+        }
+        ask(&scheduler, &person, &entry);
+        for (int tile = 0; tile < TILES;) {
+            struct schedule_entry *next = scheduler_next(&scheduler);
+            if (next == &entry) {
+                tile++;
+                scheduler_stepped(&scheduler, next, TILE_US, tile < TILES);
+                continue;
+            }
+            n_within++;
+            draw_whole(&scheduler, next, STILL_US);
+        }
+        scheduler_finished(&scheduler, &entry);
+        if (still[n_stills - 1].queue) {
+            assert_ptr_equal(scheduler_next(&scheduler), &still[n_stills - 1]);
+            draw_whole(&scheduler, &still[n_stills - 1], STILL_US);
+        }
+    }
+    assert_int_equal(n_within, 0);
+    assert_is_empty(&scheduler);
+}
+
 /* --- a newer request of a view replaces the older one */
 
 static void test_newer_request_of_a_view_replaces(void **state)
@@ -350,6 +394,7 @@ int main(void)
         cmocka_unit_test(test_order_and_two_begun),
         cmocka_unit_test(test_two_tiles_on_the_device),
         cmocka_unit_test(test_long_tiles_do_not_queue_up),
+        cmocka_unit_test(test_tiles_of_a_frame_stay_together),
         cmocka_unit_test(test_newer_request_of_a_view_replaces),
         cmocka_unit_test(test_batches_and_stills_without_a_view_stay),
         cmocka_unit_test(test_faster_than_drawn),
