@@ -231,8 +231,29 @@ class CompareCommand(Comparing):
         self.assertIn("a.obj: failed\n  the old file: ", done.stdout)
         self.assertIn("bent.obj: differs\n", done.stdout)
         self.assertIn("5 pairs: 1 within limits, 1 not, 3 failed", done.stdout)
-        self.assertRegex(done.stderr, "3 of 5 pairs failed, first a.obj: the old file: ")
+        self.assertRegex(done.stderr, "3 of 5 pairs failed, such as a.obj: the old file: ")
         self.compare(old, new, "--server", "unix:/nowhere", code=4)
+
+    def test_a_huge_model_in_a_folder(self):
+        """The daemon refuses the first pair for its size; the others are compared, and the highest code comes last."""
+        huge = "\n".join(line if line[0] == "f" else "v " + " ".join(f"{float(x) * 1e29}" for x in line.split()[1:])
+                         for line in sheet().splitlines()) + "\n"
+        old, new = (os.path.join(self.folder, "huge", folder) for folder in ("old", "new"))
+        for name, text in (("a.obj", huge), ("b.obj", sheet()), ("c.obj", sheet(LIFT))):
+            self.write(os.path.join(old, name), sheet() if name == "c.obj" else text)
+            self.write(os.path.join(new, name), text)
+        pages = os.path.join(self.folder, "huge-pages")
+        answer = self.json(old, new, "--report", pages, code=2)
+        pairs = {pair["name"]: pair for pair in answer["pairs"]}
+        self.assertEqual({name: pair["verdict"] for name, pair in pairs.items()},
+                         {"a.obj": "failed", "b.obj": "same", "c.obj": "differs"})
+        self.assertEqual(pairs["a.obj"]["error"]["code"], 2)
+        self.assertIn("no light can be chosen", pairs["a.obj"]["error"]["text"])
+        self.write(os.path.join(old, "d.obj"), "v 0 0 zero\n")
+        self.write(os.path.join(new, "d.obj"), sheet())
+        done = self.compare(old, new, code=3)
+        self.assertIn("4 pairs: 1 within limits, 1 not, 2 failed", done.stdout)
+        self.assertRegex(done.stderr, "2 of 4 pairs failed, such as d.obj: the old file: ")
 
     def junit(self, report, strange):
         """Valid by both schemas, and names that XML cannot hold."""

@@ -220,13 +220,14 @@ static int find_bad_side(const struct client *client, const struct compared_pair
 }
 
 /* Notes why a pair of two folders failed, so that the others can be compared. Returns the status unless that is
- * possible: without a session no pair can be compared, and wrong options are wrong for all. */
+ * possible: without a session no pair can be compared, and options that libsheen refuses are wrong for all. What the
+ * daemon refuses (SHEEN_BAD_REQUEST) may be a matter of this pair alone: its size, or the memory that it takes. */
 static enum sheen_status note_failure(const struct client *client, struct pairs *pairs,
                                       struct compared_pair *pair, enum sheen_status status)
 {
     static const char *const sides[] = {"", "the old file: ", "the new file: "};
     char *text = NULL;
-    if (!pairs->is_folders || sheen_status_is_fatal(status) || sheen_status_exit_code(status) < 3)
+    if (!pairs->is_folders || sheen_status_is_fatal(status) || status == SHEEN_BAD_ARGUMENT)
         return status;
     if (pair->failed_side < 0 && status == SHEEN_BAD_MODEL)
         pair->failed_side = find_bad_side(client, pair, status);
@@ -251,16 +252,24 @@ static enum sheen_status compare_all(struct client *client, const struct options
     return status;
 }
 
-/* The status of the first pair that failed, with all that failed in client->error. */
-static enum sheen_status first_failure(struct client *client, const struct pairs *pairs)
+/* The status of the failed pair with the highest exit code, the first of them, with the number of all that failed in
+ * client->error. SHEEN_OK if none failed. */
+static enum sheen_status worst_failure(struct client *client, const struct pairs *pairs)
 {
-    size_t n_failed = comparison_count(pairs->list, pairs->n, COMPARISON_FAILED);
-    for (size_t i = 0; i < pairs->n; i++)
-        if (pairs->list[i].verdict == COMPARISON_FAILED)
-            return failure_set(&client->error, pairs->list[i].status,
-                               "%zu of %zu pairs failed, first %.100s: %.400s", n_failed, pairs->n,
-                               pairs->list[i].name, pairs->list[i].failure);
-    return SHEEN_OK;
+    const struct compared_pair *worst = NULL;
+    for (size_t i = 0; i < pairs->n; i++) {
+        const struct compared_pair *pair = &pairs->list[i];
+        if (pair->verdict == COMPARISON_FAILED &&
+            (!worst ||
+             sheen_status_exit_code(pair->status) > sheen_status_exit_code(worst->status)))
+            worst = pair;
+    }
+    if (!worst)
+        return SHEEN_OK;
+    return failure_set(&client->error, worst->status,
+                       "%zu of %zu pairs failed, such as %.100s: %.400s",
+                       comparison_count(pairs->list, pairs->n, COMPARISON_FAILED), pairs->n,
+                       worst->name, worst->failure);
 }
 
 /* --- the answer */
@@ -327,7 +336,7 @@ static int run(const struct options *given)
     if (!status)
         status = print(&client, options, &views, &pairs);
     if (!status)
-        status = first_failure(&client, &pairs);
+        status = worst_failure(&client, &pairs);
     bool differs = comparison_count(pairs.list, pairs.n, COMPARISON_SAME) < pairs.n;
     pairs_finish(&pairs);
     int code = client_finish(&client, status);
@@ -449,7 +458,8 @@ const struct command COMMAND_COMPARE = {
         "are apart, and how normals, reflection lines and, if asked, curvature differ, computed\n"
         "on the surfaces themselves and in both directions. Ends with 1 if a limit is exceeded,\n"
         "or if a folder lacks a model of the other one. A pair of two folders that cannot be\n"
-        "compared is reported as failed, the others are compared, and its code comes at the end.",
+        "compared is reported as failed, the others are compared, and the highest exit code of\n"
+        "such pairs comes at the end.",
     .tables = TABLES,
     .examples =
         "  sheen compare old/hood.obj new/hood.obj\n"
