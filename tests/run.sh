@@ -186,6 +186,7 @@ oracle() {
     beside line_ends "$build/tests/test_line_ends"
     # shellcheck disable=SC2046 # a list of files without spaces
     beside comparison "$build/tests/test_comparison" $(shapes_of 'catmark_car.obj')
+    beside comparison_pairs "$build/tests/test_comparison_pairs"
     oracle_of_code
     car=$shapes/catmark_car.obj
     [ -f "$car" ] || car=tests/models/creases.obj

@@ -1,286 +1,26 @@
 /* test_comparison [CAR.obj]: server/curves/compare/comparison.h against closed forms: equal surfaces from different files, parallel
- * surfaces, a moved vertex, a rotated body, a missing face; and pairs with changes of known size around the limits. */
-#include <algorithm>
-#include <atomic>
+ * surfaces, a moved vertex, a rotated body, a missing face. */
 #include <cmath>
 #include <cstdio>
 #include <cstring>
-#include <map>
-#include <numeric>
-#include <random>
 #include <string>
 #include <vector>
 
-#include "tests/oracle/cage_file.h"
+#include "tests/oracle/comparisons.h"
 #include "tests/oracle/verdict.h"
 
-using std::atomic_bool; /* what <stdatomic.h> gives C */
-extern "C" {
-#include "server/curves/compare/comparison.h"
-#include "server/surface/subdivision/build.h"
-}
+using namespace comparisons;
 
 namespace
 {
 
 const double normal_floor_deg = 1e-5; /* of 99 % of the area; the rest: result.normal_floor_deg */
-const double unlimited = std::numeric_limits<double>::infinity();
-
-/* A cage's tables on demand, as the native device has them. */
-class surface
-{
-  public:
-    explicit surface(const loose_cage &parts)
-    {
-        solid_cage solid(parts);
-        error error = {};
-        limit_plan *plan = limit_plan_create(&solid.cage, nullptr, &error);
-        if (!plan || !limit_tables_init_on_demand(&tables, limit_plan_size(plan), &error) ||
-            !limit_build_faces(&tables, plan, 0, tables.n_faces, nullptr, &error)) {
-            std::fprintf(stderr, "%s\n", error.text);
-            std::exit(2);
-        }
-        limit_plan_destroy(plan);
-    }
-    ~surface()
-    {
-        limit_tables_finish(&tables);
-    }
-    surface(const surface &) = delete;
-    surface &operator=(const surface &) = delete;
-
-    double size() const
-    {
-        return std::sqrt(std::pow(tables.box_max[0] - tables.box_min[0], 2) +
-                         std::pow(tables.box_max[1] - tables.box_min[1], 2) +
-                         std::pow(tables.box_max[2] - tables.box_min[2], 2));
-    }
-    limit_tables tables = {};
-};
-
-/* The default limits of a file of unknown unit, and a tunnel of 40 stripes. */
-comparison_setup setup_of(const surface &before, const surface &after)
-{
-    comparison_setup setup = {};
-    setup.tables[0] = &before.tables;
-    setup.tables[1] = &after.tables;
-    setup.limit[COMPARISON_DISTANCE] = 1e-5 * before.size();
-    setup.limit[COMPARISON_NORMAL] = 0.05;
-    setup.limit[COMPARISON_LINES] = 0.1;
-    setup.limit[COMPARISON_LINE_LENGTH] = setup.limit[COMPARISON_CURVATURE] = unlimited;
-    setup.n_samples = 20000;
-    setup.most_bytes = 300 << 20;
-    double size = before.size();
-    lines lines = {};
-    lines.eye_kind = LINE_EYE_POINT;
-    light light = {};
-    light.kind = LIGHT_TUNNEL;
-    light.pattern.count = 40;
-    for (int k = 0; k < 3; k++) {
-        double middle = 0.5 * (before.tables.box_min[k] + before.tables.box_max[k]);
-        lines.eye[k] = middle + (k == 0 ? 1.5 : k == 1 ? -1 : 2) * size;
-        light.centre[k] = middle;
-        light.u[k] = (k == 2) * 1.5 * size;
-        light.v[k] = (k == 0) * size;
-    }
-    setup.n_lights = 1;
-    line_map_init(&setup.lights[0], &lines, &light);
-    return setup;
-}
-
-comparison_result compare(const comparison_setup &setup)
-{
-    error error = {};
-    computation *computation = comparison_create(&setup, &error);
-    if (!computation || !computation_run(computation, &error)) {
-        std::fprintf(stderr, "%s\n", error.text);
-        std::exit(2);
-    }
-    comparison_result result = *comparison_read(computation);
-    computation_destroy(computation);
-    return result;
-}
-
-comparison_result compare(const loose_cage &before, const loose_cage &after)
-{
-    surface a(before), b(after);
-    return compare(setup_of(a, b));
-}
-
-double worst(const comparison_result &result, comparison_measure measure)
-{
-    double most = 0;
-    for (const comparison_result_side &side : result.side)
-        if (side.figures[measure].is_known)
-            most = std::fmax(most, std::fabs(side.figures[measure].worst));
-    return most;
-}
-
-double uncovered(const comparison_result &result)
-{
-    return result.side[0].area_uncovered + result.side[1].area_uncovered;
-}
-
-/* --- cages --------------------------------------------------------------------------------------- */
-
-loose_cage read_loose(const std::string &path)
-{
-    return loose_cage(*read_cage_file(path));
-}
-
-/* Vertices and faces in another order; faces begin at another corner. */
-loose_cage renumbered(const loose_cage &from, unsigned seed)
-{
-    std::mt19937 random(seed);
-    loose_cage to = from;
-    std::vector<uint32_t> number(from.position.size());
-    std::iota(number.begin(), number.end(), 0u);
-    std::shuffle(number.begin(), number.end(), random);
-    for (size_t i = 0; i < number.size(); i++)
-        to.position[number[i]] = from.position[i];
-    for (std::vector<uint32_t> &face : to.faces) {
-        std::rotate(face.begin(), face.begin() + random() % (long)face.size(), face.end());
-        for (uint32_t &vertex : face)
-            vertex = number[vertex];
-    }
-    for (cage_crease &crease : to.creases)
-        for (uint32_t &vertex : crease.vertex)
-            vertex = number[vertex];
-    for (cage_corner &corner : to.corners)
-        corner.vertex = number[corner.vertex];
-    if (from.holes.empty())
-        std::shuffle(to.faces.begin(), to.faces.end(), random);
-    return to;
-}
-
-loose_cage rewound(const loose_cage &from)
-{
-    loose_cage to = from;
-    for (std::vector<uint32_t> &face : to.faces)
-        std::reverse(face.begin(), face.end());
-    return to;
-}
-
-using edge = std::pair<uint32_t, uint32_t>;
-
-edge edge_of(uint32_t a, uint32_t b)
-{
-    return {std::min(a, b), std::max(a, b)};
-}
-
-/* Catmull and Clark's step (1978) of a closed cage without tags. */
-loose_cage refined(const loose_cage &from)
-{
-    size_t n = from.position.size();
-    std::vector<vec3> face_sum(n), edge_sum(n);
-    std::vector<double> valence(n);
-    std::map<edge, std::vector<vec3>> beside; /* the face points at an edge */
-    std::map<edge, uint32_t> number;
-    loose_cage to;
-    to.position = from.position;
-    for (const std::vector<uint32_t> &face : from.faces) {
-        vec3 middle;
-        for (uint32_t vertex : face)
-            middle = middle + (1.0 / (double)face.size()) * from.position[vertex];
-        to.position.push_back(middle);
-        for (size_t k = 0; k < face.size(); k++) {
-            beside[edge_of(face[k], face[(k + 1) % face.size()])].push_back(middle);
-            face_sum[face[k]] = face_sum[face[k]] + middle;
-            valence[face[k]]++;
-        }
-    }
-    for (const auto &[ends, middles] : beside) {
-        vec3 a = from.position[ends.first], b = from.position[ends.second];
-        number[ends] = (uint32_t)to.position.size();
-        to.position.push_back(0.25 * (a + b + middles.at(0) + middles.at(1)));
-        edge_sum[ends.first] = edge_sum[ends.first] + b;
-        edge_sum[ends.second] = edge_sum[ends.second] + a;
-    }
-    for (size_t i = 0; i < n; i++) {
-        double k = valence[i];
-        to.position[i] =
-            ((k - 2) / k) * from.position[i] + (1 / (k * k)) * (edge_sum[i] + face_sum[i]);
-    }
-    for (size_t f = 0; f < from.faces.size(); f++) {
-        const std::vector<uint32_t> &face = from.faces[f];
-        size_t m = face.size();
-        for (size_t k = 0; k < m; k++)
-            to.faces.push_back({face[k], number[edge_of(face[k], face[(k + 1) % m])],
-                                (uint32_t)(n + f),
-                                number[edge_of(face[(k + m - 1) % m], face[k])]});
-    }
-    return to;
-}
-
-/* A flat or curved sheet of n x n quads over [0,n] x [0,n]. */
-template <class height> loose_cage sheet(int n, height z)
-{
-    loose_cage cage;
-    for (int j = 0; j <= n; j++)
-        for (int i = 0; i <= n; i++)
-            cage.position.push_back({(double)i, (double)j, z(i, j)});
-    for (int j = 0; j < n; j++)
-        for (int i = 0; i < n; i++) {
-            uint32_t k = (uint32_t)(j * (n + 1) + i), row = (uint32_t)n + 1;
-            cage.faces.push_back({k, k + 1, k + row + 1, k + row});
-        }
-    return cage;
-}
-
-/* A torus whose tube has the radius r: the control points are moved outwards so that the cubic curves through them
- * meet their circles at the knots, and elsewhere within a millionth. */
-loose_cage torus(int n, double r)
-{
-    double step = 2 * M_PI / n, out = 3 / (2 + std::cos(step));
-    loose_cage cage;
-    for (int i = 0; i < n; i++)
-        for (int j = 0; j < n; j++) {
-            double a = i * step, b = j * step, far = out * (2 + out * r * std::cos(b));
-            cage.position.push_back({far * std::cos(a), far * std::sin(a), out * r * std::sin(b)});
-        }
-    for (int i = 0; i < n; i++)
-        for (int j = 0; j < n; j++) {
-            int i2 = (i + 1) % n, j2 = (j + 1) % n;
-            cage.faces.push_back({(uint32_t)(i * n + j), (uint32_t)(i2 * n + j),
-                                  (uint32_t)(i2 * n + j2), (uint32_t)(i * n + j2)});
-        }
-    return cage;
-}
-
-/* A flat disc: n quads around vertex 0, then rings of 2 n quads. */
-loose_cage disc(int n, int rings)
-{
-    loose_cage cage;
-    cage.position.push_back({0, 0, 0});
-    for (int ring = 1; ring <= rings; ring++)
-        for (int k = 0; k < 2 * n; k++) {
-            double a = k * M_PI / n, r = ring == 1 && k % 2 ? 1.3 : ring;
-            cage.position.push_back({r * std::cos(a), r * std::sin(a), 0});
-        }
-    auto at = [&](int ring, int k) { return (uint32_t)(1 + (ring - 1) * 2 * n + k % (2 * n)); };
-    for (int k = 0; k < n; k++)
-        cage.faces.push_back({0, at(1, 2 * k), at(1, 2 * k + 1), at(1, 2 * k + 2)});
-    for (int ring = 1; ring < rings; ring++)
-        for (int k = 0; k < 2 * n; k++)
-            cage.faces.push_back(
-                {at(ring, k), at(ring + 1, k), at(ring + 1, k + 1), at(ring, k + 1)});
-    return cage;
-}
-
-loose_cage turned(loose_cage cage, vec3 axis, double angle_deg, vec3 shift)
-{
-    double s = std::sin(angle_deg * M_PI / 180), c = std::cos(angle_deg * M_PI / 180);
-    vec3 a = normalized(axis);
-    for (vec3 &p : cage.position)
-        p = c * p + s * cross(a, p) + ((1 - c) * dot(a, p)) * a + shift;
-    return cage;
-}
 
 /* --- equal surfaces ------------------------------------------------------------------------------ */
 
 void judge_equal(const std::string &name, const loose_cage &cage, bool is_smooth, verdict *verdict)
 {
-    surface before(cage);
+    cage_surface before(cage);
     comparison_result same = compare(setup_of(before, before));
     for (int k = 0; k < COMPARISON_MEASURES; k++) {
         double most = worst(same, (comparison_measure)k);
@@ -299,7 +39,7 @@ void judge_equal(const std::string &name, const loose_cage &cage, bool is_smooth
     if (is_smooth)
         twins.push_back({"refined", refined(cage), false});
     for (const twin &twin : twins) {
-        surface after(twin.cage);
+        cage_surface after(twin.cage);
         comparison_result result = compare(setup_of(before, after));
         double p99 = std::fmax(result.side[0].figures[COMPARISON_NORMAL].p99,
                                result.side[1].figures[COMPARISON_NORMAL].p99);
@@ -350,7 +90,7 @@ void judge_parallel(verdict *verdict)
 }
 
 /* The largest |p| of a surface, by places of a grid that contains all vertices and middles of faces and edges. */
-double farthest(const surface &of)
+double farthest(const cage_surface &of)
 {
     double most = 0;
     const int n = 8;
@@ -376,7 +116,7 @@ void judge_larger_body(const std::string &name, const loose_cage &cage, double k
     loose_cage larger = cage;
     for (vec3 &p : larger.position)
         p = (1 + e) * p;
-    surface before(cage), after(larger);
+    cage_surface before(cage), after(larger);
     double far = farthest(before);
     if (known > 0)
         verdict->at_most(std::fabs(far / known - 1), 1e-7, name + ": its farthest point");
@@ -435,7 +175,7 @@ void judge_rotation(verdict *verdict)
     verdict->at_most(std::fabs(worst(tilted, COMPARISON_NORMAL) - 0.1), 2e-5,
                      "normals of a tilted plane");
     loose_cage body = read_loose("tests/models/body.obj");
-    surface before(body), after(turned(body, {1, 2, 3}, 0.1, {0.004, -0.002, 0.003}));
+    cage_surface before(body), after(turned(body, {1, 2, 3}, 0.1, {0.004, -0.002, 0.003}));
     comparison_setup setup = setup_of(before, after);
     setup.is_aligned = true;
     comparison_result aligned = compare(setup);
@@ -458,7 +198,7 @@ void judge_figures(verdict *verdict)
     loose_cage tilted = square;
     for (vec3 &p : tilted.position)
         p.z = slope * p.y;
-    surface before(square), after(tilted);
+    cage_surface before(square), after(tilted);
     comparison_setup setup = setup_of(before, after);
     setup.limit[COMPARISON_DISTANCE] = 0.3 * most;
     comparison_result result = compare(setup);
@@ -499,7 +239,7 @@ void judge_hole(verdict *verdict)
     loose_cage whole = sheet(6, [](int, int) { return 0.0; }), open = whole;
     open.faces.erase(open.faces.begin() + 14);
     double expected = area_of_curve({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
-    surface a(whole), b(open);
+    cage_surface a(whole), b(open);
     comparison_setup to_open = setup_of(a, b), to_whole = setup_of(b, a);
     to_open.n_samples = to_whole.n_samples = 60000;
     comparison_result removed = compare(to_open), closed = compare(to_whole);
@@ -517,9 +257,6 @@ void judge_hole(verdict *verdict)
                    "the place of the hole");
 }
 
-/* --- as a computation ---------------------------------------------------------------------------- */
-
-/* The order of slices does not matter, and less memory than needed is refused. */
 /* A flat square whose sides x = 0 and x = 4 are moved inwards and outwards: strips without a sample inside. */
 void judge_strips(verdict *verdict)
 {
@@ -527,14 +264,14 @@ void judge_strips(verdict *verdict)
     loose_cage square = sheet(4, flat);
     for (uint32_t vertex : {0u, 4u, 20u, 24u})
         square.corners.push_back({vertex, 10});
-    surface before(square);
+    cage_surface before(square);
     double limit = 1e-5 * before.size();
     for (double strip : {0.5 * limit, 2 * limit, 35 * limit}) {
         for (bool is_wider : {false, true}) {
             loose_cage scaled = square;
             for (vec3 &p : scaled.position)
                 p.x *= 1 + (is_wider ? strip : -strip) / 4;
-            surface after(scaled);
+            cage_surface after(scaled);
             comparison_result result = compare(setup_of(before, after));
             const comparison_result_side &beyond = result.side[is_wider],
                                          &within = result.side[!is_wider];
@@ -551,11 +288,14 @@ void judge_strips(verdict *verdict)
     }
 }
 
+/* --- as a computation ---------------------------------------------------------------------------- */
+
+/* The order of slices does not matter, and less memory than needed is refused. */
 void judge_computation(verdict *verdict)
 {
     loose_cage body = read_loose("tests/models/body.obj"), moved = body;
     moved.position[20].z += 0.01;
-    surface a(body), b(moved);
+    cage_surface a(body), b(moved);
     comparison_setup setup = setup_of(a, b);
     setup.has_curvature = true;
     comparison_result forwards = compare(setup);
@@ -593,105 +333,6 @@ void judge_computation(verdict *verdict)
     }
 }
 
-/* --- pairs around the limits --------------------------------------------------------------------- */
-
-/* The largest ratio of a measure to its limit, by places of equal (u,v): exact to first order where vertices move along
- * normals. */
-double change_by_places(const surface &before, const surface &after, const comparison_setup &setup)
-{
-    double most = 0;
-    const int n = 8;
-    for (uint32_t face = 0; face < before.tables.n_faces; face++)
-        for (int k = 0; k < n * n; k++) {
-            limit_point a, b;
-            double u = (k % n + 0.5) / n, v = (k / n + 0.5) / n;
-            if (!limit_evaluate(&before.tables, face, u, v, &a) ||
-                !limit_evaluate(&after.tables, face, u, v, &b))
-                continue;
-            double distance = std::fabs(vec_dot(vec_sub(b.s, a.s), a.n));
-            double normal =
-                std::atan2(vec_length(vec_cross(a.n, b.n)), vec_dot(a.n, b.n)) * 180 / M_PI;
-            line_position from = line_position_at(&setup.lights[0], a.s, a.n);
-            line_position to = line_position_at(&setup.lights[0], b.s, b.n);
-            double lines = from.known && to.known && std::fmin(from.sine, to.sine) > 0.05
-                               ? line_shift(&setup.lights[0], &from, &to)
-                               : 0;
-            most = std::fmax(most, std::fmax(distance / setup.limit[COMPARISON_DISTANCE],
-                                             std::fmax(normal / setup.limit[COMPARISON_NORMAL],
-                                                       lines / setup.limit[COMPARISON_LINES])));
-        }
-    return most;
-}
-
-/* The limit normal near each vertex of a cage: of a corner of a face that has it. */
-std::vector<vec3> vertex_normals(const surface &surface, const loose_cage &cage)
-{
-    std::vector<vec3> normals(cage.position.size());
-    uint32_t ptex = 0;
-    for (const std::vector<uint32_t> &face : cage.faces) {
-        for (size_t k = 0; k < face.size(); k++) {
-            const double us[4] = {0.01, 0.99, 0.99, 0.01}, vs[4] = {0.01, 0.01, 0.99, 0.99};
-            bool is_quad = face.size() == 4;
-            limit_point at;
-            if (limit_evaluate(&surface.tables, is_quad ? ptex : ptex + (uint32_t)k,
-                               is_quad ? us[k] : 0.01, is_quad ? vs[k] : 0.01, &at))
-                normals[face[k]] = {at.n.x, at.n.y, at.n.z};
-        }
-        ptex += face.size() == 4 ? 1 : (uint32_t)face.size();
-    }
-    return normals;
-}
-
-/* Moves vertices along the surface's normals so that the largest change is `ratio` of its limit. */
-void judge_pair(const loose_cage &cage, bool is_noise, unsigned seed, int *n_right,
-                verdict *verdict)
-{
-    std::mt19937 random(seed);
-    surface before(cage);
-    std::vector<vec3> normals = vertex_normals(before, cage);
-    std::vector<double> amount(cage.position.size());
-    std::normal_distribution<double> noise;
-    if (is_noise)
-        for (double &each : amount)
-            each = noise(random);
-    else
-        amount[random() % amount.size()] = random() % 2 ? 1 : -1;
-    double ratio = is_noise ? 0.5 : 2, scale = 1e-5 * before.size();
-    comparison_setup setup = setup_of(before, before);
-    for (int round = 0; round < 2; round++) { /* changes are nearly proportional to the scale */
-        loose_cage moved = cage;
-        for (size_t i = 0; i < amount.size(); i++)
-            moved.position[i] = moved.position[i] + (scale * amount[i]) * normals[i];
-        surface after(moved);
-        if (round == 0) {
-            scale *= ratio / change_by_places(before, after, setup);
-            continue;
-        }
-        comparison_result result = compare(setup_of(before, after));
-        bool differs = false;
-        for (int k = 0; k < COMPARISON_MEASURES; k++)
-            differs |= worst(result, (comparison_measure)k) > setup.limit[k];
-        *n_right += differs == !is_noise;
-        verdict->check(differs == !is_noise, std::string(is_noise ? "noise" : "a change") +
-                                                 " of seed " + std::to_string(seed) +
-                                                 " was judged wrong");
-    }
-}
-
-void judge_pairs(verdict *verdict)
-{
-    const std::vector<loose_cage> cages = {
-        read_loose("tests/models/body.obj"), read_loose("tests/models/fender.obj"),
-        read_loose("tests/models/ngons.obj"), torus(12, 0.7),
-        sheet(8, [](int i, int j) { return 0.3 * std::sin(i) * std::cos(0.7 * j); })};
-    int n_right = 0, n = 0;
-    for (unsigned seed = 0; seed < 4; seed++)
-        for (const loose_cage &cage : cages)
-            for (bool is_noise : {false, true})
-                judge_pair(cage, is_noise, 100 + (unsigned)n++, &n_right, verdict);
-    std::printf("%d of %d pairs were judged right\n", n_right, n);
-}
-
 } // namespace
 
 int main(int argc, char **argv)
@@ -712,6 +353,5 @@ int main(int argc, char **argv)
     judge_hole(&verdict);
     judge_strips(&verdict);
     judge_computation(&verdict);
-    judge_pairs(&verdict);
     return verdict.finish();
 }
