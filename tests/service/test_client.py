@@ -347,14 +347,25 @@ class Client(unittest.TestCase):
     def test_warnings_name_the_file_once(self):
         model = self.path("t.obj")
         with open(model, "wb") as file:
-            file.write(CUBE + b"t scheme 0/0/1 loop\n")
+            file.write(CUBE + b"t vertexedit 0/0/1 set\n")
         for command in (("info", model), ("render", model, "-o", self.path("t.png"))):
             done = sheen(*command, "--server", self.daemon.unix)
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertEqual(done.stderr.splitlines()[0],
-                             "sheen: warning: t.obj:15: t scheme is not read: the surface is drawn "
+                             "sheen: warning: t.obj:15: t vertexedit is not read: the surface is drawn "
                              "as if it were not there")
             self.assertEqual(sheen(*command, "-q", "--server", self.daemon.unix).stderr, "")
+
+    def test_schemes_of_obj_files(self):
+        """A scheme that is not evaluated is refused by name, never drawn as Catmull-Clark's."""
+        model = self.path("s.obj")
+        for scheme, name in (("loop", "Loop"), ("bilinear", "bilinear"), ("catmark", None)):
+            with open(model, "wb") as file:
+                file.write(CUBE + b"t scheme 0/0/1 " + scheme.encode() + b"\n")
+            for command in (("info", model), ("render", model, "-o", self.path("s.png"))):
+                done = sheen(*command, "-q", "--server", self.daemon.unix)
+                self.assertEqual((done.returncode, done.stderr), (0, "") if not name else
+                                 (3, f"sheen: s.obj: the cage uses the {name} scheme, which sheen does not evaluate yet\n"))
 
     def test_nothing_to_see(self):
         """The notice appears once, not with -q, and with every command that draws."""

@@ -138,7 +138,7 @@ class Pick(DaemonCase):
             model = os.path.join(folder, "tall.obj")
             with open(os.path.join(MODELS, "sheet.obj"), encoding="utf-8") as file, open(model, "w",
                                                                                       encoding="utf-8") as copy:
-                copy.write(file.read() + "t scheme 0/0/1 loop\n")
+                copy.write(file.read() + "t vertexedit 0/0/1 set\n")
             common = ("--size", SIZE, "--server", self.daemon.unix)
             drawn = subprocess.run([SHEEN, "render", model, "-o", os.path.join(folder, "a.png"), *common],
                                    capture_output=True, text=True, timeout=60)

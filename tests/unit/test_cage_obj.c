@@ -264,6 +264,28 @@ static void test_other_tags(void **state)
     cage_finish(&cage);
 }
 
+/* The last tag holds, wherever it is in the file. */
+static void test_scheme_tags(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text;
+        enum cage_scheme scheme;
+    } good[] = {
+        {"t scheme 0/0/1 loop\n" PAIR, CAGE_SCHEME_LOOP},
+        {PAIR "t scheme 0/0/1 bilinear\n", CAGE_SCHEME_BILINEAR},
+        {PAIR "t scheme 0/0/1 catmark\n", CAGE_SCHEME_CATMULL_CLARK},
+        {"t scheme 0/0/1 loop\n" PAIR "t scheme 0/0/1 catmark\n", CAGE_SCHEME_CATMULL_CLARK},
+    };
+    for (size_t i = 0; i < sizeof good / sizeof *good; i++) {
+        struct cage cage;
+        read_obj(&cage, good[i].text);
+        assert_int_equal(cage.scheme, good[i].scheme);
+        assert_null(cage.warnings);
+        cage_finish(&cage);
+    }
+}
+
 static void test_tag_errors(void **state)
 {
     (void)state;
@@ -308,6 +330,10 @@ static void test_tag_errors(void **state)
         {"t smoothtriangles 0/0/1\n",
          "t smoothtriangles ends before its last word: it announces 0/0/1"},
         {"t smoothtriangles 0/0/1 loop\n", "t smoothtriangles is 'loop', needs catmark or smooth"},
+        {"t scheme 0/0/1 Loop\n", "t scheme is 'Loop', needs catmark, loop or bilinear"},
+        {"t scheme 0/0/1\n", "t scheme ends before its last word: it announces 0/0/1"},
+        {"t scheme 1/0/0 1\n", "t scheme needs one word, 0/0/1"},
+        {"t scheme 0/0/1 loop catmark\n", "t scheme has more than it announces (0/0/1): 'catmark'"},
     };
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         char text[400], message[480];
@@ -534,19 +560,13 @@ static void test_a_million_faces(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_index_forms),
-        cmocka_unit_test(test_order),
-        cmocka_unit_test(test_lines),
-        cmocka_unit_test(test_long_line),
-        cmocka_unit_test(test_geometry_errors),
-        cmocka_unit_test(test_bytes_that_are_no_text),
-        cmocka_unit_test(test_crease_tags),
-        cmocka_unit_test(test_other_tags),
-        cmocka_unit_test(test_tag_errors),
-        cmocka_unit_test(test_warnings),
-        cmocka_unit_test(test_negative_sharpness),
-        cmocka_unit_test(test_own_models),
-        cmocka_unit_test(test_shapes),
+        cmocka_unit_test(test_index_forms),     cmocka_unit_test(test_order),
+        cmocka_unit_test(test_lines),           cmocka_unit_test(test_long_line),
+        cmocka_unit_test(test_geometry_errors), cmocka_unit_test(test_bytes_that_are_no_text),
+        cmocka_unit_test(test_crease_tags),     cmocka_unit_test(test_other_tags),
+        cmocka_unit_test(test_scheme_tags),     cmocka_unit_test(test_tag_errors),
+        cmocka_unit_test(test_warnings),        cmocka_unit_test(test_negative_sharpness),
+        cmocka_unit_test(test_own_models),      cmocka_unit_test(test_shapes),
         cmocka_unit_test(test_a_million_faces),
     };
     return cmocka_run_group_tests_name("cage/obj", tests, NULL, NULL);

@@ -179,19 +179,56 @@ static bool read_interpolate_boundary(struct obj_reader *reader, const struct ta
     return true;
 }
 
-/* Reads a tag with one of two words; the second sets *flag. */
-static bool read_choice(struct obj_reader *reader, const struct tag *tag, const char *off,
-                        const char *on, bool *flag)
+/* Reads a tag that is one of n words; *choice is its index in words[]. `needs` lists them for the
+ * message. */
+static bool read_word(struct obj_reader *reader, const struct tag *tag, const char *const *words,
+                      size_t n, const char *needs, size_t *choice)
 {
     struct obj_field field;
     if (tag->n_strings != 1 || tag->n_ints != 0 || tag->n_floats != 0)
         return obj_fail(reader, "t %.*s needs one word, 0/0/1", OBJ_SHOWN(&tag->name));
     if (!obj_text_field(&reader->text, &field))
         return missing(reader, tag, "word");
-    if (!obj_field_is(&field, on) && !obj_field_is(&field, off))
-        return obj_fail(reader, "t %.*s is '%.*s', needs %s or %s", OBJ_SHOWN(&tag->name),
-                        OBJ_SHOWN(&field), off, on);
-    *flag = obj_field_is(&field, on);
+    for (*choice = 0; *choice < n; ++*choice)
+        if (obj_field_is(&field, words[*choice]))
+            return true;
+    return obj_fail(reader, "t %.*s is '%.*s', needs %s", OBJ_SHOWN(&tag->name), OBJ_SHOWN(&field),
+                    needs);
+}
+
+static bool read_crease_method(struct obj_reader *reader, const struct tag *tag)
+{
+    static const char *const words[] = {"normal", "chaikin"};
+    size_t choice;
+    if (!read_word(reader, tag, words, 2, "normal or chaikin", &choice))
+        return false;
+    reader->builder->cage.chaikin = choice == 1;
+    return true;
+}
+
+static bool read_smooth_triangles(struct obj_reader *reader, const struct tag *tag)
+{
+    static const char *const words[] = {"catmark", "smooth"};
+    size_t choice;
+    if (!read_word(reader, tag, words, 2, "catmark or smooth", &choice))
+        return false;
+    reader->builder->cage.smooth_triangles = choice == 1;
+    return true;
+}
+
+/* Reads sheen's own tag `scheme`. OBJ files without it are Catmull-Clark's. If there are several,
+ * the last one holds, as of the other settings. */
+static bool read_scheme(struct obj_reader *reader, const struct tag *tag)
+{
+    static const char *const words[] = {
+        [CAGE_SCHEME_CATMULL_CLARK] = "catmark",
+        [CAGE_SCHEME_LOOP] = "loop",
+        [CAGE_SCHEME_BILINEAR] = "bilinear",
+    };
+    size_t choice;
+    if (!read_word(reader, tag, words, 3, "catmark, loop or bilinear", &choice))
+        return false;
+    reader->builder->cage.scheme = (enum cage_scheme)choice;
     return true;
 }
 
@@ -225,7 +262,6 @@ static void pass_over(struct obj_reader *reader, const struct tag *tag)
 bool obj_read_tag(struct obj_reader *reader)
 {
     struct tag tag;
-    struct cage *cage = &reader->builder->cage;
     if (!read_counts(reader, &tag))
         return false;
     bool ok;
@@ -238,9 +274,11 @@ bool obj_read_tag(struct obj_reader *reader)
     else if (obj_field_is(&tag.name, "interpolateboundary"))
         ok = read_interpolate_boundary(reader, &tag);
     else if (obj_field_is(&tag.name, "creasemethod"))
-        ok = read_choice(reader, &tag, "normal", "chaikin", &cage->chaikin);
+        ok = read_crease_method(reader, &tag);
     else if (obj_field_is(&tag.name, "smoothtriangles"))
-        ok = read_choice(reader, &tag, "catmark", "smooth", &cage->smooth_triangles);
+        ok = read_smooth_triangles(reader, &tag);
+    else if (obj_field_is(&tag.name, "scheme"))
+        ok = read_scheme(reader, &tag);
     else if (obj_field_is(&tag.name, "weld"))
         ok = read_weld(reader, &tag);
     else {
