@@ -188,6 +188,10 @@ class Patches(DaemonCase):
                  "e.patches": "patches 1\ncoons-bicubic\n" + curves + across,
                  "f.obj": "v " + text(net).strip().replace("\n", "\nv ") + "\ncstype bezier\ndeg 3 3\nsurf 0 1 0 1 " +
                           " ".join(str(k) for k in range(1, 17)) + "\nparm u 0 1\nparm v 0 1\nend\n"}
+        bernstein = " 1 -3 3 -1 0 3 -6 3 0 0 3 -3 0 0 0 1"
+        files["g.obj"] = files["f.obj"].replace("bezier", "bmatrix").replace(
+            "deg", f"bmat u{bernstein}\nbmat v{bernstein}\nstep 3 3\ndeg")
+        files["h.obj"] = files["f.obj"].replace("bezier", "rat bezier")
         pictures = []
         for name, contents in files.items():
             picture = os.path.join(self.folder, name + ".png")
@@ -203,6 +207,11 @@ class Patches(DaemonCase):
             done = self.sheen("info", self.write("bad.bpt", text), code=3)
             self.assertIn(words, done.stderr)
             self.assertEqual(len(done.stderr.splitlines()), 1)
+        rational = ("v 0 0 0\nv 1 0 0 0.5\nv 0 1 0\nv 1 1 0\ncstype rat bezier\ndeg 1 1\nsurf 0 1 0 1 1 2 3 4\n"
+                    "parm u 0 1\nparm v 0 1\nend\n")
+        done = self.sheen("info", self.write("rational.obj", rational), code=3)
+        self.assertIn(":7: control point 2 has the weight 0.5, and the first one 1: ", done.stderr)
+        self.assertEqual(len(done.stderr.splitlines()), 1)
 
     def test_weld_is_for_faces(self):
         self.assertIn("--weld is for OBJ; patches are joined", self.sheen("info", BOTTLE, "--weld", code=2).stderr)

@@ -84,6 +84,100 @@ static void test_pieces_and_range(void **state)
     cage_finish(&cage);
 }
 
+static void expect_patches(const struct cage *cage, const struct cage *expected, double within)
+{
+    assert_int_equal(cage->n_patches, expected->n_patches);
+    for (size_t f = 0; f < cage->n_patches; f++)
+        for (int k = 0; k < 16; k++)
+            for (int i = 0; i < 3; i++)
+                assert_true(fabs(cage->patch[f].point[k][i] - expected->patch[f].point[k][i]) <=
+                            within);
+}
+
+/* Reads both texts after the grid, and expects the same patches, within so many units. */
+static void expect_same(const char *text, const char *expected_text, double within)
+{
+    char whole[2000];
+    struct cage cage, expected;
+    snprintf(whole, sizeof whole, GRID "%s", text);
+    read_obj(&cage, whole);
+    snprintf(whole, sizeof whole, GRID "%s", expected_text);
+    read_obj(&expected, whole);
+    expect_patches(&cage, &expected, within);
+    cage_finish(&cage);
+    cage_finish(&expected);
+}
+
+/* A rational surface of equal weights is the polynomial one of the same points, bit by bit. */
+static void test_equal_weights(void **state)
+{
+    (void)state;
+    expect_same("cstype rat bezier\ndeg 3 3\nsurf 0 1 0 1 " POINTS "\n" ENDS,
+                BEZIER "surf 0 1 0 1 " POINTS "\n" ENDS, 0);
+    expect_same("v 0 0 0 0.3\nv 1 0 0.5 0.3\nv 0 1 1 0.3\nv 1 1 4 0.3\ncstype rat bspline\n"
+                "deg 1 1\nsurf 0 1 0 1 -4 -3 -2 -1\nparm u 0 0 1 1\nparm v 0 0 1 1\nend\n",
+                "v 0 0 0 9 9 9\nv 1 0 0.5\nv 0 1 1 7\nv 1 1 4\ncstype bezier\ndeg 1 1\n"
+                "surf 0 1 0 1 17 18 19 20\n" ENDS,
+                0);
+    /* A colour is no weight. */
+    expect_same(
+        "v 0 0 0 1 0 0\nv 1 0 0.5\ncstype rat bezier\ndeg 1 1\nsurf 0 1 0 1 17 18 5 6\n" ENDS,
+        "v 0 0 0\nv 1 0 0.5\ncstype bezier\ndeg 1 1\nsurf 0 1 0 1 17 18 5 6\n" ENDS, 0);
+}
+
+#define BERNSTEIN_3 "1 -3 3 -1  0 3 -6 3  0 0 3 -3  0 0 0 1"
+#define UNIFORM_3                                                                                  \
+    "0.16666666666666667 -0.5 0.5 -0.16666666666666667  0.66666666666666667 0 -1 0.5 "             \
+    "0.16666666666666667 0.5 0.5 -0.5  0 0 0 0.16666666666666667"
+
+/* The basis matrices of Bezier and of uniform B-spline surfaces, one of each along u and v, one piece and two. */
+static void test_matrices(void **state)
+{
+    (void)state;
+    expect_same("cstype bmatrix\ndeg 3 3\nstep 3 3\nbmat u " BERNSTEIN_3 "\nbmat v \\\n" BERNSTEIN_3
+                "\nsurf 0 1 0 1 " POINTS "\n" ENDS,
+                BEZIER "surf 0 1 0 1 " POINTS "\n" ENDS, 1e-15);
+    expect_same("cstype bmatrix\ndeg 1 3\nstep 1 1\nbmat u 1 -1 0 1\nbmat v " UNIFORM_3
+                "\nsurf 0 2.5 5 6 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16\nparm u 0 1 2 3\n"
+                "parm v 5 6\nend\n",
+                "cstype bspline\ndeg 1 3\nsurf 0 2.5 3 4 " POINTS
+                "\nparm u -1 0 1 2 3 4\nparm v 0 1 2 3 4 5 6 7\nend\n",
+                1e-14);
+}
+
+/* Two cardinal pieces along u go through the inner control points, with the slopes of chords. */
+static void test_cardinal(void **state)
+{
+    struct cage cage;
+    (void)state;
+    read_obj(&cage, GRID "v 4 0 0\nv 4 1 0\nv 4 2 3\nv 4 3 0\ncstype cardinal\ndeg 3 3\n"
+                         "surf 0 2 0 1 1 2 3 4 17 5 6 7 8 18 9 10 11 12 19 13 14 15 16 20\n"
+                         "parm u 0 1 2\nparm v 0 1\nend\n");
+    assert_int_equal(cage.n_patches, 2);
+    const double(*p)[3] = (const double(*)[3])cage.patch[0].point;
+    const double(*q)[3] = (const double(*)[3])cage.patch[1].point;
+    static const double first[3] = {1, 1, 1}, middle[3] = {2, 1, 2}, last[3] = {3, 2, 0};
+    assert_memory_equal(p[0], first, sizeof first);
+    assert_memory_equal(p[3], middle, sizeof middle);
+    assert_memory_equal(q[15], last, sizeof last);
+    for (int j = 0; j < 4; j++) /* the pieces meet exactly */
+        assert_memory_equal(p[4 * j + 3], q[4 * j], sizeof first);
+    assert_true(fabs(3 * (p[1][2] - p[0][2]) - (2 - 0) / 2.0) < 1e-14);
+    assert_true(fabs(3 * (q[1][2] - q[0][2]) - (0 - 1) / 2.0) < 1e-14);
+    cage_finish(&cage);
+}
+
+/* 1 + 2 u + 3 v + 4 u v, and the same as a Bezier surface. */
+static void test_taylor(void **state)
+{
+    (void)state;
+    expect_same("v 0 0 1\nv 1 0 2\nv 0 1 3\nv 0 0 4\ncstype taylor\ndeg 1 1\n"
+                "surf 0.25 1 0 1 17 18 19 20\n" ENDS,
+                "v 0 0 1\nv 1 0 3\nv 0 1 4\nv 1 1 10\ncstype bezier\ndeg 1 1\n"
+                "surf 0.25 1 0 1 17 18 19 20\n" ENDS,
+                1e-15);
+}
+
 /* --weld joins vertices of faces; there are none. */
 static void test_weld(void **state)
 {
@@ -100,12 +194,46 @@ static const struct {
     {"surf 0 1 0 1 1\n", ":17: surf comes before any cstype"},
     {"cstype\n", ":17: cstype has no type"},
     {"cstype rat\n", ":17: cstype rat has no type"},
-    {"cstype rat bezier\ndeg 3 3\nsurf 0 1 0 1 1\n",
-     ":19: a rational surface (cstype rat of line 17): sheen draws surfaces without weights"},
-    {"cstype taylor\ndeg 3 3\nsurf 0 1 0 1 1\n",
-     ":19: a surface of cstype taylor (line 17): sheen draws bezier and bspline"},
-    {"cstype cardinal\ndeg 3 3\nsurf 0 1 0 1 1\n", ":19: a surface of cstype cardinal"},
-    {"cstype bmatrix\ndeg 3 3\nsurf 0 1 0 1 1\n", ":19: a surface of cstype bmatrix"},
+    {"v 0 0 1 0.5\ncstype rat bezier\ndeg 3 3\nsurf 0 1 0 1 1 2 17\n",
+     ":20: control point 3 has the weight 0.5, and the first one 1: of rational surfaces sheen "
+     "draws "
+     "those whose weights are all equal"},
+    {"v 0 0 1 0\ncstype rat bezier\ndeg 3 3\nsurf 0 1 0 1 1 17\n",
+     ":20: control point 2 has the weight 0, which is not above 0"},
+    {"v 0 0 1 -1\ncstype rat bezier\ndeg 3 3\nsurf 0 1 0 1 17\n", "the weight -1, which is not"},
+    {"v 0 0 1 x\ncstype rat bezier\ndeg 3 3\nsurf 0 1 0 1 17\n", "the weight nan, which is not"},
+    {"cstype rat taylor\ndeg 3 3\nsurf 0 1 0 1 1\n",
+     ":19: a rational surface of cstype rat taylor (line 17): sheen draws rat with bezier, bspline "
+     "and cardinal"},
+    {"cstype rat bmatrix\ndeg 3 3\nsurf 0 1 0 1 1\n", "a rational surface of cstype rat bmatrix"},
+    {"cstype cardinal\ndeg 3 2\nsurf 0 1 0 1 1\n" ENDS,
+     ":22: a cardinal surface of degree 2 along v: the degree is 3"},
+    {"cstype taylor\ndeg 3 3\nsurf 0 1 0 1 " POINTS "\nparm u 0 2\nparm v 0 1\nend\n",
+     ":22: parm u of a taylor surface: sheen draws one piece from 0 to 1"},
+    {"cstype taylor\ndeg 3 3\nsurf 0 1 0 1 " POINTS "\nparm u 0 1\nparm v 0 1 2\nend\n",
+     ":22: parm v of a taylor surface"},
+    {"cstype taylor\ndeg 3 2\nsurf 0 1 0 1 " POINTS "\n" ENDS,
+     "has 16 control points, but deg and parm make 4 x 3"},
+    {"bmat\n", ":17: bmat needs u or v"},
+    {"bmat w 1\n", ":17: bmat needs u or v"},
+    {"bmat u 1 x\n", ":17: a number of bmat is no finite number: 'x'"},
+    {"step y\n", ":17: a step is no finite number: 'y'"},
+    {"cstype bmatrix\ndeg 1 1\nsurf 0 1 0 1 1 2 3 4\n" ENDS,
+     ":22: bmat u has 0 numbers, degree 1 needs 4"},
+    {"cstype bmatrix\ndeg 1 1\nbmat u 1 -1 0 1\nbmat v 1\nstep 1 1\nsurf 0 1 0 1 1 2 3 4\n" ENDS,
+     ":25: bmat v has 1 numbers, degree 1 needs 4"},
+    {"cstype bmatrix\ndeg 1 1\nbmat u 1 -1 0 1\nbmat v 1 -1 0 1\nsurf 0 1 0 1 1 2 3 4\n" ENDS,
+     ":24: the step along u is 0, not a whole number from 1 to 1000000"},
+    {"cstype bmatrix\ndeg 1 1\nbmat u 1 -1 0 1\nbmat v 1 -1 0 1\nstep 1 1.5\nsurf 0 1 0 1 1 2 3 "
+     "4\n" ENDS,
+     ":25: the step along v is 1.5, not"},
+    {"cstype bmatrix\ndeg 1 1\nbmat u 1 -1 0 1\nbmat v 1 -1 0 1\nstep 1e6 1\nsurf 0 9 0 1 1 2 3 4\n"
+     "parm u 0 9\nparm u 10\nparm v 0 1\nend\n",
+     "has 4 control points, but deg and parm make 1000002 x 2"},
+    {"cstype bmatrix\ndeg 1 1\nbmat u 1e30 -1 1e30 1\nbmat v 1e30 -1 0 1\nstep 1 1\n"
+     "surf 0 1 0 1 2 3 4 5\n" ENDS,
+     "beyond"},
+    {BEZIER "surf 0 1 0 1 " POINTS "\nbmat u 1\n" ENDS, ":20: bmat within the surface of line 19"},
     {"cstype \1\ndeg 3 3\nsurf 0 1 0 1 1\n", ":19: a surface of cstype"},
     {"cstype bezier\nsurf 0 1 0 1 1\n", ":18: surf comes before a deg with two degrees"},
     {"cstype bezier\ndeg 3\nsurf 0 1 0 1 1\n", ":19: surf comes before a deg with two degrees"},
@@ -206,6 +334,8 @@ int main(void)
         cmocka_unit_test(test_bezier),           cmocka_unit_test(test_forms_of_lines),
         cmocka_unit_test(test_uniform_bspline),  cmocka_unit_test(test_clamped_bspline),
         cmocka_unit_test(test_pieces_and_range), cmocka_unit_test(test_weld),
+        cmocka_unit_test(test_equal_weights),    cmocka_unit_test(test_matrices),
+        cmocka_unit_test(test_cardinal),         cmocka_unit_test(test_taylor),
         cmocka_unit_test(test_damage),           cmocka_unit_test(test_cut_off),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -11,6 +11,7 @@
 
 #include "server/cage/build/patch_blends.h"
 #include "server/cage/build/patch_forms.h"
+#include "server/cage/build/piece_basis.h"
 #include "server/cage/build/spline_surface.h"
 #include "server/cage/patch.h"
 
@@ -218,6 +219,68 @@ static void test_hermite(void **unused)
     assert_true(worst < 1e-14);
 }
 
+/* A piece of a basis at t, by its definition. */
+static long double piece_at(const double (*d)[3], int k, int kind, int n, const double *matrix,
+                            long double t)
+{
+    const long double c[4] = {d[0][k], d[1][k], n > 1 ? d[2][k] : 0, n > 2 ? d[3][k] : 0};
+    long double sum = 0;
+    if (kind == 0) { /* Hermite's cubic with the slopes of chords */
+        const long double from = (c[2] - c[0]) / 2, to = (c[3] - c[1]) / 2;
+        return (1 + 2 * t) * (1 - t) * (1 - t) * c[1] + t * (1 - t) * (1 - t) * from +
+               t * t * (3 - 2 * t) * c[2] + t * t * (t - 1) * to;
+    }
+    for (int i = 0; i <= n; i++) {
+        long double weight = kind == 1 ? powl(t, i) : 0;
+        for (int j = 0; kind == 2 && j <= n; j++)
+            weight += (long double)matrix[i * (n + 1) + j] * powl(t, j);
+        sum += weight * c[i];
+    }
+    return sum;
+}
+
+/* Rows of pieces of all three bases, all degrees and steps 1 to 5. */
+static void test_pieces(void **unused)
+{
+    double worst = 0;
+    (void)unused;
+    for (int round = 0; round < ROUNDS; round++) {
+        enum { PIECES = 3, MOST = 2 * 5 + 4 };
+        const int kind = round % 3, n = kind == 0 ? 3 : 1 + round / 3 % 3;
+        double control[2 * MOST][3], out[PIECES * 4][3], matrix[16];
+        for (int i = 0; i < 16; i++)
+            matrix[i] = 3 * uniform();
+        const size_t step = 1 + (size_t)round / 9 % 5;
+        const struct piece_basis basis = kind == 0 ? piece_basis_cardinal()
+                                         : kind == 1
+                                             ? piece_basis_taylor((unsigned)n)
+                                             : piece_basis_matrix((unsigned)n, step, matrix);
+        random_points(control, 2 * MOST);
+        assert_true(piece_basis_points(&basis, PIECES) ==
+                    (PIECES - 1) * basis.step + (size_t)n + 1);
+        piece_basis_row(&basis, PIECES, (const double(*)[3])control, 2, out, 1);
+        const double size = largest_of((const double(*)[3])control, 2 * MOST);
+        for (size_t piece = 0; piece < PIECES; piece++)
+            for (int place = 0; place <= 4; place++) {
+                long double b[4];
+                double window[4][3];
+                for (size_t i = 0; i <= (size_t)n; i++)
+                    memcpy(window[i], control[2 * (piece * basis.step + i)], sizeof window[i]);
+                bernstein(n, place / 4.0L, b);
+                for (int k = 0; k < 3; k++) {
+                    long double got = 0;
+                    for (int i = 0; i <= n; i++)
+                        got += b[i] * (long double)out[(int)piece * (n + 1) + i][k];
+                    const long double expected =
+                        piece_at((const double(*)[3])window, k, kind, n, matrix, place / 4.0L);
+                    worst = fmax(worst, (double)fabsl(got - expected) / size);
+                }
+            }
+    }
+    print_message("pieces: %.2g of the largest coordinate\n", worst);
+    assert_true(worst < 2e-14); /* the weights of a random matrix add up to 48 */
+}
+
 /* Four random sides that meet at the corners. */
 static void random_sides(double side[N_PATCH_SIDES][4][3])
 {
@@ -418,9 +481,10 @@ static void test_spline_surfaces(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_bases),         cmocka_unit_test(test_degrees),
-        cmocka_unit_test(test_hermite),       cmocka_unit_test(test_coons),
-        cmocka_unit_test(test_bicubic_coons), cmocka_unit_test(test_spline_surfaces),
+        cmocka_unit_test(test_bases),           cmocka_unit_test(test_degrees),
+        cmocka_unit_test(test_hermite),         cmocka_unit_test(test_pieces),
+        cmocka_unit_test(test_coons),           cmocka_unit_test(test_bicubic_coons),
+        cmocka_unit_test(test_spline_surfaces),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -41,7 +41,7 @@ static bool read_vertex(struct obj_reader *reader)
                             axis, position[i], CAGE_MAX_COORDINATE);
     }
     /* A weight or a colour may follow; neither changes the position. */
-    return cage_builder_vertex(reader->builder, position, reader->error);
+    return obj_read_weight(reader) && cage_builder_vertex(reader->builder, position, reader->error);
 }
 
 /* Parses an integer with a sign; saturates far beyond any valid index. */
@@ -203,7 +203,7 @@ bool obj_read(struct cage_builder *builder, const void *bytes, size_t size, cons
         ok =
             error_set(error, ERROR_MODEL,
                       "%s: is not an OBJ file: it has no vertex and no face. " OTHER_FORMATS, name);
-    obj_surface_finish(&reader.surface);
+    obj_surface_finish(&reader);
     freelocale(c_locale);
     return ok;
 }

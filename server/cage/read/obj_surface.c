@@ -12,12 +12,17 @@
 
 static const char *const AXIS[2] = {"u", "v"};
 
-void obj_surface_finish(struct obj_surface *surface)
+void obj_surface_finish(struct obj_reader *reader)
 {
+    struct obj_surface *surface = &reader->surface;
     free(surface->point);
-    for (int a = 0; a < 2; a++)
+    for (int a = 0; a < 2; a++) {
         free(surface->knots[a].value);
+        free(surface->matrix[a].value);
+    }
+    free(reader->weight.value);
     *surface = (struct obj_surface){.line = 0};
+    reader->weight = (struct obj_numbers){0};
 }
 
 /* Doubles the room of an array that is full. False with ERROR_SERVER when memory is short. */
@@ -36,15 +41,35 @@ static bool make_room(struct obj_reader *reader, void **array, size_t n, size_t 
     return true;
 }
 
-/* Reads a number; `what` has it is not one. False with ERROR_MODEL. */
-static bool read_number(struct obj_reader *reader, const struct obj_field *field, const char *what,
-                        double *number)
+bool obj_read_number(struct obj_reader *reader, const struct obj_field *field, const char *what,
+                     double *number)
 {
     if (decimal_read(field->text, field->length, reader->c_locale, number) != DECIMAL_OK)
         return obj_fail(reader, "%s is no finite number: '%.*s'", what, OBJ_SHOWN(field));
     return fabs(*number) <= CAGE_MAX_COORDINATE ||
            obj_fail(reader, "%s is %g, beyond the largest that is read, %g", what, *number,
                     CAGE_MAX_COORDINATE);
+}
+
+bool obj_add_number(struct obj_reader *reader, struct obj_numbers *numbers, double number)
+{
+    void *values = numbers->value;
+    if (!make_room(reader, &values, numbers->n, &numbers->room, sizeof *numbers->value))
+        return false;
+    numbers->value = values;
+    numbers->value[numbers->n++] = number;
+    return true;
+}
+
+bool obj_read_numbers(struct obj_reader *reader, const char *what, struct obj_numbers *numbers)
+{
+    struct obj_field field;
+    double number;
+    while (obj_text_field(&reader->text, &field))
+        if (!obj_read_number(reader, &field, what, &number) ||
+            !obj_add_number(reader, numbers, number))
+            return false;
+    return true;
 }
 
 static bool read_type(struct obj_reader *reader)
@@ -66,7 +91,7 @@ static bool read_degrees(struct obj_reader *reader)
     struct obj_field field;
     reader->surface.degree[0] = reader->surface.degree[1] = 0;
     for (int a = 0; a < 2 && obj_text_field(&reader->text, &field); a++)
-        if (!read_number(reader, &field, "a degree of deg", &reader->surface.degree[a]))
+        if (!obj_read_number(reader, &field, "a degree of deg", &reader->surface.degree[a]))
             return false;
     return true;
 }
@@ -77,14 +102,17 @@ static bool check_type(const struct obj_reader *reader)
     const struct obj_surface *surface = &reader->surface;
     if (surface->type.length == 0)
         return obj_fail(reader, "surf comes before any cstype");
-    if (surface->is_rational)
+    const bool has_basis = obj_has_piece_basis(surface);
+    if (!has_basis && !obj_field_is(&surface->type, "bezier") &&
+        !obj_field_is(&surface->type, "bspline"))
         return obj_fail(reader,
-                        "a rational surface (cstype rat of line %u): sheen draws surfaces without "
-                        "weights",
-                        surface->type_line);
-    if (!obj_field_is(&surface->type, "bezier") && !obj_field_is(&surface->type, "bspline"))
+                        "a surface of cstype %.*s (line %u): sheen draws bezier, bspline, "
+                        "cardinal, taylor and bmatrix",
+                        OBJ_SHOWN(&surface->type), surface->type_line);
+    if (surface->is_rational && has_basis && !obj_field_is(&surface->type, "cardinal"))
         return obj_fail(reader,
-                        "a surface of cstype %.*s (line %u): sheen draws bezier and bspline",
+                        "a rational surface of cstype rat %.*s (line %u): sheen draws rat with "
+                        "bezier, bspline and cardinal",
                         OBJ_SHOWN(&surface->type), surface->type_line);
     for (int a = 0; a < 2; a++) {
         const double degree = surface->degree[a];
@@ -96,6 +124,22 @@ static bool check_type(const struct obj_reader *reader)
                             degree, AXIS[a], PATCH_MAX_DEGREE);
     }
     return true;
+}
+
+/* With equal weights a rational surface is the polynomial one of the same points. */
+static bool check_weight(const struct obj_reader *reader)
+{
+    const struct obj_surface *surface = &reader->surface;
+    const double first = obj_weight_of(reader, surface->point[0]),
+                 last = obj_weight_of(reader, surface->point[surface->n_points - 1]);
+    if (!(last > 0))
+        return obj_fail(reader, "control point %zu has the weight %.9g, which is not above 0",
+                        surface->n_points, last);
+    return first == last ||
+           obj_fail(reader,
+                    "control point %zu has the weight %.9g, and the first one %.9g: of rational "
+                    "surfaces sheen draws those whose weights are all equal",
+                    surface->n_points, last, first);
 }
 
 static bool read_point(struct obj_reader *reader, const struct obj_field *field)
@@ -117,7 +161,7 @@ static bool read_point(struct obj_reader *reader, const struct obj_field *field)
     surface->point = points;
     surface->point[surface->n_points++] =
         (uint32_t)(index < 0 ? (int64_t)n_vertices + index : index - 1);
-    return true;
+    return !surface->is_rational || check_weight(reader);
 }
 
 static bool begin_surface(struct obj_reader *reader)
@@ -134,7 +178,7 @@ static bool begin_surface(struct obj_reader *reader)
         if (!obj_text_field(&reader->text, &field))
             return obj_fail(
                 reader, "surf has %d numbers, needs its range: u from and to, v from and to", i);
-        if (!read_number(reader, &field, "a number of surf's range", &surface->range[i]))
+        if (!obj_read_number(reader, &field, "a number of surf's range", &surface->range[i]))
             return false;
     }
     while (obj_text_field(&reader->text, &field))
@@ -149,46 +193,36 @@ static bool read_knots(struct obj_reader *reader)
     if (!obj_text_field(&reader->text, &field) ||
         (!obj_field_is(&field, "u") && !obj_field_is(&field, "v")))
         return obj_fail(reader, "parm needs u or v");
-    struct obj_numbers *knots = &reader->surface.knots[obj_field_is(&field, "v")];
-    while (obj_text_field(&reader->text, &field)) {
-        void *values = knots->value;
-        if (!make_room(reader, &values, knots->n, &knots->room, sizeof *knots->value))
-            return false;
-        knots->value = values;
-        if (!read_number(reader, &field, "a number of parm", &knots->value[knots->n]))
-            return false;
-        knots->n++;
-    }
-    return true;
+    return obj_read_numbers(reader, "a number of parm",
+                            &reader->surface.knots[obj_field_is(&field, "v")]);
 }
 
 /* --- the end of a surface */
 
-/* Repeats the breaks of a Bezier surface, so that they are the knots of the same surface as a B-spline. False with
- * ERROR_SERVER. */
-static bool repeat_breaks(struct obj_reader *reader, struct obj_numbers *knots, unsigned degree)
+/* Repeats the breaks between pieces, those at the ends degree + 1 times and the others `times`, so that they are the
+ * knots of the same surface as a B-spline. False with ERROR_SERVER. */
+static bool repeat_breaks(struct obj_reader *reader, struct obj_numbers *knots, unsigned degree,
+                          unsigned times)
 {
-    const size_t n = knots->n * degree + 2;
-    double *value = malloc(n * sizeof *value);
-    if (!value)
-        return error_set(reader->error, ERROR_SERVER, "%s: not enough memory for a surface",
-                         reader->name);
-    size_t to = 0;
-    value[to++] = knots->value[0];
-    for (size_t i = 0; i < knots->n; i++)
-        for (unsigned k = 0; k < degree; k++)
-            value[to++] = knots->value[i];
-    value[to++] = knots->value[knots->n - 1];
+    struct obj_numbers repeated = {0};
+    for (size_t i = 0; i < knots->n; i++) {
+        const unsigned n = i == 0 || i == knots->n - 1 ? degree + 1 : times;
+        for (unsigned k = 0; k < n; k++)
+            if (!obj_add_number(reader, &repeated, knots->value[i])) {
+                free(repeated.value);
+                return false;
+            }
+    }
     free(knots->value);
-    *knots = (struct obj_numbers){value, n, n};
+    *knots = repeated;
     return true;
 }
 
-static bool check_knots(const struct obj_reader *reader, const char *axis, bool is_bezier,
+static bool check_knots(const struct obj_reader *reader, const char *axis, bool are_breaks,
                         unsigned degree, const struct obj_numbers *knots)
 {
-    const size_t least = is_bezier ? 2 : 2 * ((size_t)degree + 1),
-                 most = is_bezier ? 1 : degree + 1;
+    const size_t least = are_breaks ? 2 : 2 * ((size_t)degree + 1),
+                 most = are_breaks ? 1 : degree + 1;
     if (knots->n < least)
         return obj_fail(reader, "parm %s has %zu numbers, needs at least %zu", axis, knots->n,
                         least);
@@ -205,15 +239,45 @@ static bool check_knots(const struct obj_reader *reader, const char *axis, bool 
     return true;
 }
 
-/* Fills in an axis from deg, parm and the range. */
-static bool set_axis(struct obj_reader *reader, int a, struct spline_axis *axis)
+/* An axis as the file gives it, and as a B-spline. */
+struct obj_axis {
+    struct spline_axis spline;
+    struct piece_basis basis;  /* of types that have one */
+    size_t n_pieces, n_points; /* n_points: control points of the file along this axis */
+};
+
+/* Fills in the number of control points, and the knots from the breaks of pieces. */
+static bool set_points(struct obj_reader *reader, int a, struct obj_axis *axis)
 {
     struct obj_surface *surface = &reader->surface;
     struct obj_numbers *knots = &surface->knots[a];
     const unsigned degree = (unsigned)surface->degree[a];
-    const bool is_bezier = obj_field_is(&surface->type, "bezier");
-    if (!check_knots(reader, AXIS[a], is_bezier, degree, knots) ||
-        (is_bezier && !repeat_breaks(reader, knots, degree)))
+    const bool is_bspline = obj_field_is(&surface->type, "bspline");
+    if (!check_knots(reader, AXIS[a], !is_bspline, degree, knots))
+        return false;
+    if (is_bspline) {
+        axis->n_points = knots->n - degree - 1;
+        return true;
+    }
+    axis->n_pieces = knots->n - 1;
+    if (!obj_has_piece_basis(surface)) {
+        axis->n_points = axis->n_pieces * degree + 1;
+        return repeat_breaks(reader, knots, degree, degree);
+    }
+    if (!obj_piece_basis(reader, a, &axis->basis))
+        return false;
+    axis->n_points = piece_basis_points(&axis->basis, axis->n_pieces);
+    return repeat_breaks(reader, knots, degree, degree + 1);
+}
+
+/* Fills in an axis from deg, parm and the range. */
+static bool set_axis(struct obj_reader *reader, int a, struct obj_axis *whole)
+{
+    struct obj_surface *surface = &reader->surface;
+    struct obj_numbers *knots = &surface->knots[a];
+    const unsigned degree = (unsigned)surface->degree[a];
+    struct spline_axis *axis = &whole->spline;
+    if (!set_points(reader, a, whole))
         return false;
     *axis = (struct spline_axis){degree, knots->n - degree - 1, knots->value, surface->range[2 * a],
                                  surface->range[2 * a + 1]};
@@ -231,19 +295,32 @@ static bool set_axis(struct obj_reader *reader, int a, struct spline_axis *axis)
     return axis->low < axis->high || obj_fail(reader, "surf's range of %s is empty", AXIS[a]);
 }
 
-static bool end_surface(struct obj_reader *reader)
+/* The points of a surface whose pieces have a basis of their own become Bezier points: *points, which are freed,
+ * are replaced. False with ERROR_SERVER. */
+static bool convert_points(struct obj_reader *reader, const struct obj_axis *u,
+                           const struct obj_axis *v, double (**points)[3])
 {
-    struct obj_surface *surface = &reader->surface;
-    struct spline_axis u, v;
-    if (!surface->line)
-        return true; /* of a curve */
-    if (!set_axis(reader, 0, &u) || !set_axis(reader, 1, &v))
-        return false;
-    if (surface->n_points != u.n * v.n)
-        return obj_fail(
-            reader,
-            "the surface of line %u has %zu control points, but deg and parm make %zu x %zu",
-            surface->line, surface->n_points, u.n, v.n);
+    const size_t columns = u->spline.n, rows = v->spline.n;
+    double(*along_u)[3] = malloc(columns * v->n_points * sizeof *along_u);
+    double(*both)[3] = malloc(columns * rows * sizeof *both);
+    const bool ok = along_u && both;
+    for (size_t j = 0; ok && j < v->n_points; j++)
+        piece_basis_row(&u->basis, u->n_pieces, (const double(*)[3]) * points + j * u->n_points, 1,
+                        along_u + j * columns, 1);
+    for (size_t i = 0; ok && i < columns; i++)
+        piece_basis_row(&v->basis, v->n_pieces, (const double(*)[3])along_u + i, columns, both + i,
+                        columns);
+    free(along_u);
+    free(*points);
+    *points = both;
+    return ok || error_set(reader->error, ERROR_SERVER, "%s: not enough memory for a surface",
+                           reader->name);
+}
+
+static bool add_surface(struct obj_reader *reader, const struct obj_axis *u,
+                        const struct obj_axis *v)
+{
+    const struct obj_surface *surface = &reader->surface;
     double(*points)[3] = malloc(surface->n_points * sizeof *points);
     if (!points)
         return error_set(reader->error, ERROR_SERVER, "%s: not enough memory for a surface",
@@ -251,11 +328,30 @@ static bool end_surface(struct obj_reader *reader)
     for (size_t i = 0; i < surface->n_points; i++)
         for (int k = 0; k < 3; k++)
             points[i][k] = reader->builder->cage.position[surface->point[i]][k];
-    bool ok = spline_surface_add(reader->builder, &u, &v, (const double(*)[3])points, surface->line,
-                                 reader->error);
+    bool ok = (!obj_has_piece_basis(surface) || convert_points(reader, u, v, &points)) &&
+              spline_surface_add(reader->builder, &u->spline, &v->spline,
+                                 (const double(*)[3])points, surface->line, reader->error);
     free(points);
-    surface->line = 0;
     return ok;
+}
+
+static bool end_surface(struct obj_reader *reader)
+{
+    struct obj_surface *surface = &reader->surface;
+    struct obj_axis u = {.n_pieces = 0}, v = {.n_pieces = 0};
+    if (!surface->line)
+        return true; /* of a curve */
+    if (!set_axis(reader, 0, &u) || !set_axis(reader, 1, &v))
+        return false;
+    if (surface->n_points != u.n_points * v.n_points)
+        return obj_fail(
+            reader,
+            "the surface of line %u has %zu control points, but deg and parm make %zu x %zu",
+            surface->line, surface->n_points, u.n_points, v.n_points);
+    if (!add_surface(reader, &u, &v))
+        return false;
+    surface->line = 0;
+    return true;
 }
 
 bool obj_end_surfaces(struct obj_reader *reader)
@@ -281,8 +377,8 @@ bool obj_end_surfaces(struct obj_reader *reader)
 /* Keywords that change no surface: curves, of which only trims and holes make use, and wishes for a tessellation. */
 static bool is_of_curves(const struct obj_field *keyword)
 {
-    static const char *const words[] = {"curv", "curv2", "con",  "ctech", "stech",
-                                        "mg",   "step",  "bmat", "sp",    "scrv"};
+    static const char *const words[] = {"curv",  "curv2", "con", "ctech",
+                                        "stech", "mg",    "sp",  "scrv"};
     for (size_t i = 0; i < sizeof words / sizeof *words; i++)
         if (obj_field_is(keyword, words[i]))
             return true;
@@ -291,7 +387,8 @@ static bool is_of_curves(const struct obj_field *keyword)
 
 bool obj_read_surface(struct obj_reader *reader, const struct obj_field *keyword, bool *is_known)
 {
-    const bool is_setting = obj_field_is(keyword, "cstype") || obj_field_is(keyword, "deg");
+    const bool is_setting = obj_field_is(keyword, "cstype") || obj_field_is(keyword, "deg") ||
+                            obj_field_is(keyword, "bmat") || obj_field_is(keyword, "step");
     *is_known = true;
     if (is_setting && reader->surface.line)
         return obj_fail(reader, "%.*s within the surface of line %u, which has no end before",
@@ -300,6 +397,10 @@ bool obj_read_surface(struct obj_reader *reader, const struct obj_field *keyword
         return read_type(reader);
     if (obj_field_is(keyword, "deg"))
         return read_degrees(reader);
+    if (obj_field_is(keyword, "bmat"))
+        return obj_read_matrix(reader);
+    if (obj_field_is(keyword, "step"))
+        return obj_read_step(reader);
     if (obj_field_is(keyword, "surf"))
         return begin_surface(reader);
     if (obj_field_is(keyword, "parm"))
