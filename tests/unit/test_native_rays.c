@@ -111,8 +111,28 @@ static void test_rays_are_centres(void **state)
         judge_set(set);
 }
 
+/* A view may have millions of vertices in a tile. Threads pass over them once or twice for each RAYS_PX pixels, not for
+ * each few pixels. Without many vertices each thread takes pixels often enough to share the work. */
+static void test_passes_over_vertices(void **state)
+{
+    (void)state;
+    srand(20261202);
+    for (int i = 0; i < 20000; i++) {
+        uint32_t n = 1 + (uint32_t)rand() % 20000, threads = 1 + (uint32_t)rand() % 32;
+        uint64_t n_vertices = (uint64_t)rand() % 24000000;
+        uint32_t at_once = native_pixels_at_once(n, threads, n_vertices);
+        uint32_t passes = (n + at_once - 1) / at_once, least = (n + RAYS_PX - 1) / RAYS_PX;
+        assert_in_range(at_once, 1, RAYS_PX);
+        if (passes > least && n_vertices > 0)
+            assert_true(passes <= threads || passes * n_vertices <= (uint64_t)threads << 23);
+        at_once = native_pixels_at_once(n, threads, n_vertices % 1000);
+        assert_true(at_once <= 32 + n / (8 * threads));
+    }
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_rays_are_centres)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_rays_are_centres),
+                                       cmocka_unit_test(test_passes_over_vertices)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -290,25 +290,55 @@ static void draw_triangle(const struct source *of, const struct native_triangle 
     draw_touched(of->room, &cell, &halves, &in, t);
 }
 
+/* Cells of a grid's row that are passed over together: with LANES vertices above and as many below them. */
+enum { CELLS_TOGETHER = LANES - 1 };
+
+/* Whether a listed pixel may lie near one of n <= CELLS_TOGETHER cells of a row. x and y: their first vertex in the
+ * picture, `row` vertices before the one below it. */
+static bool any_near(const struct source *of, const float *x, const float *y, int row, int n)
+{
+    vmask lanes = v_mask(v_first((uint32_t)n + 1));
+    vfloat above_x = v_load(x), below_x = v_load(x + row);
+    vfloat above_y = v_load(y), below_y = v_load(y + row);
+    vfloat far = v_float(INFINITY);
+    float ends_x[2] = {v_least(v_select(lanes, v_min(above_x, below_x), far)) - of->left,
+                       v_largest(v_select(lanes, v_max(above_x, below_x), -far)) - of->left};
+    float ends_y[2] = {v_least(v_select(lanes, v_min(above_y, below_y), far)) - of->top,
+                       v_largest(v_select(lanes, v_max(above_y, below_y), -far)) - of->top};
+    struct touched in;
+    return touch(ends_x, ends_y, 2, CELL_PX, &in) && any_listed(of->room, &in);
+}
+
+/* Draws n cells of a row of a grid; `first` is the vertex at which they begin. */
+static void draw_cells(const struct source *of, const float *const vertex[3], int first, int row,
+                       int n, struct cell *cell)
+{
+    for (int i = first; i < first + n; i++) {
+        cell->s = (float)(i % row) * cell->ds;
+        const int corner[4] = {i, i + 1, i + row, i + row + 1};
+        for (int k = 0; k < 4; k++) {
+            cell->x[k] = vertex[0][corner[k]] - of->left;
+            cell->y[k] = vertex[1][corner[k]] - of->top;
+            cell->nearness[k] = vertex[2][corner[k]];
+        }
+        draw_whole(of, cell);
+    }
+}
+
 static void draw_grid(const struct source *of, const float *vertex, uint32_t grid, int piece)
 {
     int across = grid_cells[grid / GRID_SIDES], down = grid_cells[grid % GRID_SIDES];
-    int n = (across + 1) * (down + 1);
-    const float *x = vertex, *y = x + n + LANES, *nearness = y + n + LANES;
+    int row = across + 1, n = row * (down + 1);
+    const float *const at[3] = {vertex, vertex + n + LANES, vertex + 2 * (n + LANES)};
     struct cell cell = {.ds = PLACE_STEPS / (float)across, .dt = PLACE_STEPS / (float)down};
     cell.piece = piece;
     for (int j = 0; j < down; j++) {
-        for (int i = 0; i < across; i++) {
-            int first = j * (across + 1) + i;
-            const int corner[4] = {first, first + 1, first + across + 1, first + across + 2};
-            for (int k = 0; k < 4; k++) {
-                cell.x[k] = x[corner[k]] - of->left;
-                cell.y[k] = y[corner[k]] - of->top;
-                cell.nearness[k] = nearness[corner[k]];
-            }
-            cell.s = (float)i * cell.ds;
-            cell.t = (float)j * cell.dt;
-            draw_whole(of, &cell);
+        cell.t = (float)j * cell.dt;
+        for (int i = 0; i < across; i += CELLS_TOGETHER) {
+            int first = j * row + i, left = across - i;
+            int together = left < CELLS_TOGETHER ? left : CELLS_TOGETHER;
+            if (any_near(of, at[0] + first, at[1] + first, row, together))
+                draw_cells(of, at, first, row, together, &cell);
         }
     }
 }

@@ -28,8 +28,17 @@ void native_sort_pixels(uint32_t *pixel, uint32_t n, const struct tile *tile, ui
     sort_by(room, n, origin, 16 + 7, pixel);
 }
 
-/* Each thread takes pixels about TURNS times, at least LEAST_PX. */
-enum { TURNS = 8, LEAST_PX = 32 };
+/* Each thread takes pixels about TURNS times, at least LEAST_PX, so that none waits long for the last pixels of another.
+ * Each time it passes over the vertices of all pieces in the tile: over TURNS_VERTICES in all, or once. */
+enum { TURNS = 8, LEAST_PX = 32, TURNS_VERTICES = 1 << 23 };
+
+uint32_t native_pixels_at_once(uint32_t n, unsigned threads, uint64_t n_vertices)
+{
+    uint64_t turns = n_vertices ? TURNS_VERTICES / n_vertices : TURNS;
+    turns = turns < 1 ? 1 : turns < TURNS ? turns : TURNS;
+    uint32_t at_once = n / ((uint32_t)turns * threads) + LEAST_PX;
+    return at_once < RAYS_PX ? at_once : RAYS_PX;
+}
 
 struct rounded_job {
     struct native_device *device;
@@ -81,9 +90,9 @@ bool native_meet_rounded(struct native_device *device, const struct native_round
         if (!thread->rays)
             return error_set(error, ERROR_SERVER, "out of memory for the rays of pixels");
     }
-    /* Few enough that no thread waits long for the last pixels of another. */
-    job.at_once = rounded->n / (TURNS * native_device_threads(device)) + LEAST_PX;
-    job.at_once = job.at_once < RAYS_PX ? job.at_once : RAYS_PX;
+    uint64_t n_tiles = (uint64_t)job.frame->tiles_x * job.frame->tiles_y;
+    job.at_once = native_pixels_at_once(rounded->n, native_device_threads(device),
+                                        job.frame->n_vertices / n_tiles);
     native_device_run(device, meet_rounded, &job);
     return !job.out_of_memory ||
            error_set(error, ERROR_SERVER, "out of memory for the rays of pixels");

@@ -147,6 +147,9 @@ void native_sort_pixels(uint32_t *pixel, uint32_t n, const struct tile *tile, ui
 bool native_meet_pixels(const struct native_frame *frame, struct native_thread *thread,
                         const struct native_rounded *rounded, uint32_t first, uint32_t n);
 
+/* The number of pixels that a thread takes at a time, of n; n_vertices: of the pieces in a tile of
+ * the picture. */
+uint32_t native_pixels_at_once(uint32_t n, unsigned threads, uint64_t n_vertices);
 /* Meets the rays of pixels with the surface, by all threads. The device's last frame
  * (native_device_drawn) must be of what is drawn. Writes every hit. False with ERROR_SERVER when
  * memory is short. */
