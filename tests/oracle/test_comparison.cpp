@@ -53,7 +53,7 @@ void judge_equal(const std::string &name, const loose_cage &cage, bool is_smooth
         verdict->at_most(p99, normal_floor_deg, what + ": 99 % of the normals");
         /* Beside semi-sharp creases patches are hundreds of times as long as they are wide. */
         verdict->at_most(worst(result, COMPARISON_NORMAL),
-                         is_smooth ? result.normal_floor_deg : 1e-3, what + ": normals");
+                         is_smooth ? result.normal_floor_deg : 2e-4, what + ": normals");
         verdict->at_most(worst(result, COMPARISON_LINES), 1e-3, what + ": lines");
         verdict->check(uncovered(result) == 0, what + ": surface is missing");
         verdict->check(result.is_rewound == twin.is_rewound, what + ": winding");
