@@ -47,7 +47,7 @@ static size_t n_slices_of(const struct surface_lines *lines, size_t faces)
 
 static void charge(struct surface_lines *lines, size_t bytes)
 {
-    if ((lines->bytes += bytes) > lines->most_bytes)
+    if (atomic_fetch_add(&lines->bytes, bytes) + bytes > lines->most_bytes)
         lines->is_over = true;
 }
 
