@@ -59,8 +59,8 @@ struct build_order {
 /* The bytes that a model with these tables takes, on the device and in main memory. */
 size_t build_model_bytes(const struct build_order *order, const struct limit_tables *tables);
 /* order->may_need() for a model with these tables and for `plan_bytes` more while it is built, and
- * order->reserve() for the model. Where a device that stores tables has no
- * room for them, the error also names the device that needs less. */
+ * order->reserve() for the model. Where a device that stores tables has no room for them, the error also
+ * names the device that needs less. */
 bool build_may_need_model(const struct build_order *order, const struct limit_tables *tables,
                           size_t plan_bytes, struct error *error);
 bool build_reserve_model(const struct build_order *order, const struct limit_tables *tables,

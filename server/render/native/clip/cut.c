@@ -93,7 +93,7 @@ static struct native_corner vertex_at(struct cutting *of, int i, int j)
  * others. */
 enum { CUT_VERTEX_WEIGHT = 16 };
 
-/* Counts the vertices of a block, so that views that cut very many pieces are refused, as others with too many
+/* Counts the vertices of so many cells, so that views that cut very many pieces are refused, as others with too many
  * vertices are. False if they are too many. */
 static bool count_vertices(struct native_frame *frame, int across, int down)
 {
@@ -128,6 +128,8 @@ static int cut_cells(struct cutting *of, int i0, int j0, int i1, int j1)
 
 static int cut_block(struct cutting *of, int i0, int j0)
 {
+    if (!count_vertices(of->frame, 1, 1)) /* its corners */
+        return 0;
     int i1 = i0 + BLOCK < of->across ? i0 + BLOCK : of->across;
     int j1 = j0 + BLOCK < of->down ? j0 + BLOCK : of->down;
     const struct native_corner corners[4] = {vertex_at(of, i0, j0), vertex_at(of, i1, j0),
